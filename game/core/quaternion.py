@@ -197,7 +197,7 @@ def from_matrix(m: ArrayLike) -> Floats:
         axis=-2,
     )
     best = np.argmax(np.stack([xx, yy, zz, xx + yy + zz], -1), axis=-1)
-    q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
+    q: Floats = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
     q = normalize(q)
     return np.asarray(np.where(q[..., 3:] < 0, -q, q))
 

@@ -1,0 +1,117 @@
+"""The floor plan is law: which package may import which, read from the imports themselves."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+GAME = ROOT / "game"
+
+# package -> packages of this project it may import (itself always).
+PLAN: dict[str, set[str]] = {
+    "core": set(),
+    "formats": {"core"},
+    "story": {"core", "formats"},
+    "emotion": {"core", "formats"},
+    "market": {"core", "formats"},
+    "embos": {"core", "formats"},
+    "animation": {"core", "embos"},
+    "face": {"core", "formats"},
+    "render": {"core", "formats", "face"},
+    "app": {"core", "formats", "story", "emotion", "market", "embos", "animation", "face", "render", "tools"},
+    "tools": {"core", "formats", "story", "emotion", "market", "embos", "animation", "face", "render", "app"},
+}
+# Only these touch the window and the GPU (offline tools draw through game.render).
+MAY_DRAW = {"app", "render"}
+# What the runtime may import besides the standard library and this project.
+RUNTIME = {"numpy", "scipy", "yaml", "pygame", "moderngl", "platformdirs", "font_source_sans_pro", "font_fredoka_one"}
+
+MODULES = sorted(path for path in GAME.rglob("*.py") if path.parent != GAME)
+
+
+def _package(path: Path) -> str:
+    return path.relative_to(GAME).parts[0]
+
+
+def _imports(path: Path) -> list[tuple[int, str]]:
+    found: list[tuple[int, str]] = []
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found += [(node.lineno, alias.name) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: imports are absolute"
+            found.append((node.lineno, node.module or ""))
+            found += [(node.lineno, f"{node.module}.{alias.name}") for alias in node.names]
+    return found
+
+
+def test_every_package_is_in_the_plan() -> None:
+    assert {path.name for path in GAME.iterdir() if path.is_dir() and path.name != "__pycache__"} == set(PLAN)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(GAME)))
+def test_imports_follow_the_plan(path: Path) -> None:
+    package = _package(path)
+    for line, name in _imports(path):
+        parts = name.split(".")
+        if parts[0] != "game" or len(parts) < 2:
+            continue
+        if parts[1] in PLAN:
+            assert parts[1] == package or parts[1] in PLAN[package], f"{path}:{line}: {package} may not import {name}"
+
+
+def test_only_the_command_line_reaches_the_tools() -> None:
+    """The runtime never imports offline code: app modules import tools only inside a function."""
+    for path in MODULES:
+        if _package(path) != "app":
+            continue
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in tree.body:
+            names = (
+                [alias.name for alias in node.names]
+                if isinstance(node, ast.Import)
+                else [node.module or ""]
+                if isinstance(node, ast.ImportFrom)
+                else []
+            )
+            assert not any(name.startswith("game.tools") for name in names), f"{path}:{node.lineno}"
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(GAME)))
+def test_third_parties(path: Path) -> None:
+    import sys
+
+    package = _package(path)
+    for line, name in _imports(path):
+        top = name.split(".")[0]
+        if top in sys.stdlib_module_names or top in {"game", "__future__"}:
+            continue
+        if package == "tools":
+            continue
+        assert top in RUNTIME, f"{path}:{line}: {top} is no runtime dependency"
+        if top in {"pygame", "moderngl"}:
+            assert package in MAY_DRAW, f"{path}:{line}: only {sorted(MAY_DRAW)} touch {top}"
+
+
+@pytest.mark.parametrize("package", sorted(PLAN))
+def test_public_names_exist(package: str) -> None:
+    module = importlib.import_module(f"game.{package}")
+    for name in getattr(module, "__all__", []):
+        assert hasattr(module, name), f"game.{package}.__all__ names {name}, which is not there"
+
+
+def test_modules_stay_readable() -> None:
+    for path in MODULES:
+        lines = len(path.read_text(encoding="utf-8").splitlines())
+        assert lines <= 400, f"{path.relative_to(ROOT)} has {lines} lines: split it where two topics share a file"
+
+
+def test_nothing_names_this_machine() -> None:
+    """No committed text may name the folder this checkout happens to lie in."""
+    here = str(ROOT)
+    for path in [*MODULES, *ROOT.glob("*.md"), *ROOT.glob("*.toml")]:
+        assert here not in path.read_text(encoding="utf-8"), f"{path} names {here}"
