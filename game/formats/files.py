@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import stat
+import tempfile
 from pathlib import Path
 
 from game.core.errors import BadInput, Where
 
-__all__ = ["decode_utf8", "read_bytes"]
+__all__ = ["decode_utf8", "read_bytes", "write_text"]
 
 
 def read_bytes(path: Path | str, *, max_bytes: int, what: str = "file") -> bytes:
@@ -40,6 +42,22 @@ def decode_utf8(data: bytes, path: Path | str) -> str:
             where=Where(path, byte=error.start), expected="UTF-8 text", seen=data[error.start : error.start + 4]
         ) from None
     return text.removeprefix("\ufeff")
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write UTF-8 text so that the file appears whole or not at all. Raises BadInput where that is impossible."""
+    temporary = ""
+    try:
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+        # mkstemp's 0600 would hide the file from everybody else.
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError as error:
+        if temporary:
+            Path(temporary).unlink(missing_ok=True)
+        raise BadInput(f"cannot write this file: {error.strerror or error}", where=Where(path)) from None
 
 
 def _kind(mode: int) -> str:

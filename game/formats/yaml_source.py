@@ -225,11 +225,12 @@ def parse_yaml(text: str, path: Path | str, *, max_nodes: int = 200_000, max_dep
             builder.take(event)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        where = Where(path) if mark is None else Where(path, mark.line + 1, mark.column + 1)
-        tab = "cannot start any token" in str(error.problem) and mark is not None and _at(text, mark) == "\t"
+        if mark is None:
+            raise BadInput(f"YAML: {error.problem}", where=Where(path)) from None
+        tab = "cannot start any token" in str(error.problem) and _at(text, mark) == "\t"
         raise BadInput(
-            f"YAML: {error.problem or 'not YAML'}",
-            where=where,
+            f"YAML: {error.problem}",
+            where=Where(path, mark.line + 1, mark.column + 1),
             hint="indent with spaces, not tabs" if tab else error.context,
         ) from None
     except yaml.YAMLError as error:
