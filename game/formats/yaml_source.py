@@ -281,7 +281,7 @@ class _Builder:
             if self.documents > 1:
                 raise BadInput(where=self._where(event), expected="one YAML document", seen=_Plain("a second one"))
 
-    def _where(self, event: yaml.Event) -> Where:
+    def _where(self, event: Any) -> Where:
         mark = event.start_mark
         return Where(self.path, mark.line + 1, mark.column + 1)
 
