@@ -1,0 +1,44 @@
+"""From the numbers of an expression to triangles. Pure arrays; the renderer only paints them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from game.core.errors import BadInput
+from game.face._brows import brows, furrows, nose
+from game.face._eyes import eyeballs, lashes, lids
+from game.face._marks import complexion, drops, signs
+from game.face._mouth import lips, mouth
+from game.face.mesh import DrawList, Sheet
+from game.face.params import FIELDS, FaceParams, clamp
+from game.face.style import DEFAULT_STYLE, FaceStyle
+
+__all__ = ["tessellate"]
+
+
+def tessellate(params: FaceParams, style: FaceStyle = DEFAULT_STYLE) -> DrawList:
+    """Triangles of one expression (K,), values outside their ranges being clamped.
+
+    Positions are mm in head-rest space, within x −170..170, y −200..140; see ``mesh.Layer`` for the colours.
+    Raises BadInput for a wrong length or values that are not finite.
+    """
+    values = np.asarray(params, dtype=np.float64)
+    if values.shape != (len(FIELDS),) or not np.isfinite(values).all():
+        raise BadInput("expression", expected=f"{len(FIELDS)} finite numbers", seen=f"shape {values.shape}")
+    values = clamp(values)
+    lid = lids(values)
+    under = Sheet()
+    complexion(under, values)
+    nose(under, values, style)
+    furrows(under, values, style)
+    eyeballs(under, values, lid, style)
+    lashes(under, values, lid, style, over=False)
+    brows(under, values, style)
+    mouth(under, values, lips(values, style), style)
+    drops(under, values, style)
+    signs(under, values)
+    over = Sheet()
+    lashes(over, values, lid, style, over=True)
+    brows(over, values, style)
+    signs(over, values)
+    return DrawList(under.layer(), over.layer())
