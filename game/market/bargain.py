@@ -172,7 +172,7 @@ def play_round(
         best = max(best, offer)
         # A disgusted seller sells only at the asking price.
         if offer >= ask or (label != "disgust" and offer >= max(accept_at, bargain.lowest)):
-            result, outcome, price = OfferResult.ACCEPTED, Outcome.DEAL, min(offer, ask)
+            result, outcome, price = OfferResult.ACCEPTED, Outcome.DEAL, min(offer, bargain.ask)
         elif offer < bargain.lowest - rules.insult_margin:
             result = OfferResult.INSULT
             excess = bargain.lowest - rules.insult_margin - offer
