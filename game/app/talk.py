@@ -42,7 +42,7 @@ from game.market import (
 )
 from game.story import Beat, Chose, Memory, Script, Start, StoryState, advance, begin
 
-__all__ = ["MONEY_STEP", "Choice", "TalkAssets", "TalkState", "ask_money", "choose", "start_talk"]
+__all__ = ["MONEY_STEP", "Choice", "TalkAssets", "TalkState", "ask_money", "choose", "start_talk", "talk_env"]
 
 Floats = NDArray[np.float64]
 
@@ -109,24 +109,23 @@ def ask_money(list_price: int, ask: float) -> int:
     return min(math.ceil(round(ask * list_price / MONEY_STEP, 6)) * MONEY_STEP, list_price)
 
 
-def _env(state: TalkState | None, assets: TalkAssets, **now: Any) -> dict[str, float | str | bool]:
+def talk_env(state: TalkState, assets: TalkAssets, **now: Any) -> dict[str, float | str | bool]:
     """The names a dialogue condition may use; what is felt is not among them, on purpose."""
-    env: dict[str, float | str | bool] = {"rounds": assets.market.rounds}
-    if state is not None:
-        ask = ask_money(state.list_price, state.bargain.ask)
-        env |= {
-            "trust": state.bargain.trust,
-            "patience": state.bargain.patience,
-            "round": state.bargain.round + 1,
-            "ask": ask,
-            "price": ask,
-            "list_price": state.list_price,
-            "purse": state.purse,
-            "visit": state.visit,
-            "offer": round(state.bargain.offer * state.list_price),
-            "deal_price": state.deal_price,
-            "tidying": state.answer.tidying,
-        }
+    ask = ask_money(state.list_price, state.bargain.ask)
+    env: dict[str, float | str | bool] = {
+        "rounds": assets.market.rounds,
+        "trust": state.bargain.trust,
+        "patience": state.bargain.patience,
+        "round": state.bargain.round + 1,
+        "ask": ask,
+        "price": ask,
+        "list_price": state.list_price,
+        "purse": state.purse,
+        "visit": state.visit,
+        "offer": round(state.bargain.offer * state.list_price),
+        "deal_price": state.deal_price,
+        "tidying": state.answer.tidying,
+    }
     return env | now
 
 
@@ -142,7 +141,7 @@ def start_talk(
     bargain = start_bargain(assets.market, assets.person.patience, _rng(seed, "mark", 0), failed_visits=failed_visits)
     visit = 1 if memory is None else memory.visits + 1
     first = TalkState(seed, item, list_price, purse, story, feeling, bargain, Beat((), (), None, (), ""), visit=visit)
-    story, beat = advance(assets.script, story, Start(), _env(first, assets))
+    story, beat = advance(assets.script, story, Start(), talk_env(first, assets))
     return replace(first, story=story, beat=beat, feeling=_with_stimuli(assets, feeling, beat))
 
 
@@ -206,7 +205,7 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     if deal:
         deal = min(deal, ask_money(state.list_price, state.bargain.ask))
     moved = replace(state, feeling=feeling, bargain=bargain, answer=answer, deal_price=deal)
-    env = _env(
+    env = talk_env(
         moved,
         assets,
         round=counter,

@@ -1,0 +1,83 @@
+"""The player's settings: a small JSON file in the user's configuration folder. A broken one is set aside, not lost."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from dataclasses import asdict, dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import platformdirs
+
+__all__ = ["CHOICES", "Settings", "load_settings", "save_settings", "user_folder"]
+
+APP = "mental-communication-game"
+
+CHOICES: dict[str, tuple[Any, ...]] = {
+    "language": ("en", "ja"),
+    "text_speed": ("slow", "normal", "fast", "instant"),
+    "fullscreen": (False, True),
+    "ui_scale": (1.0, 1.25, 1.5, 2.0),
+    "captions": (False, True),
+    "quality": ("auto", "low", "medium", "default", "high", "ultra"),
+}
+"""Every setting with the values it may have; the first is not always the default."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the player has chosen. captions: describe in words what the body shows."""
+
+    language: str = "en"
+    text_speed: str = "normal"
+    fullscreen: bool = False
+    ui_scale: float = 1.0
+    captions: bool = False
+    quality: str = "auto"
+
+    def next(self, name: str) -> Settings:
+        """The setting's following value, around the circle."""
+        values = CHOICES[name]
+        at = values.index(getattr(self, name))
+        return replace(self, **{name: values[(at + 1) % len(values)]})
+
+
+def user_folder() -> Path:
+    """Where settings and saves live; the environment variable MCG_USER_FOLDER puts them elsewhere (tests)."""
+    return Path(os.environ.get("MCG_USER_FOLDER") or platformdirs.user_data_path(APP, appauthor=False))
+
+
+def load_settings(folder: Path | None = None) -> tuple[Settings, str | None]:
+    """The settings and, where the file was unreadable, one line that says so. Never raises, never deletes."""
+    path = (folder or user_folder()) / "settings.json"
+    try:
+        if not path.exists():
+            return Settings(), None
+        data = json.loads(path.read_text(encoding="utf-8")[:100_000])
+        if not isinstance(data, dict):
+            raise ValueError("not a mapping")
+    except (OSError, ValueError, RecursionError) as error:
+        return Settings(), f"{path}: settings not readable ({str(error)[:80]}), using the defaults"
+    known = {f.name for f in fields(Settings)}
+    good = {k: v for k, v in data.items() if k in known and v in CHOICES[k] and type(v) is type(CHOICES[k][0])}
+    return replace(Settings(), **good), None
+
+
+def save_settings(settings: Settings, folder: Path | None = None) -> str | None:
+    """Write the settings atomically; returns one line where that is impossible (the game goes on without)."""
+    path = (folder or user_folder()) / "settings.json"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".settings.", suffix=".part")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                json.dump(asdict(settings), file, indent=1)
+            os.replace(name, path)
+        except BaseException:
+            os.unlink(name)
+            raise
+    except OSError as error:
+        return f"{path}: settings could not be saved ({error.strerror})"
+    return None
