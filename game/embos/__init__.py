@@ -1,1 +1,30 @@
+"""EMBOS: motion units, the four factors of eq. 1, the planner, the statistics of takes and the mixing of variants."""
 
+from game.embos.clips import ClipBank, TakeClip, load_clips, pack_clips
+from game.embos.config import PlannerConfig, load_config
+from game.embos.library import UnitLibrary
+from game.embos.mixing import mix, mix_weights
+from game.embos.planner import TICK_S, Decisions, Planner, PlannerSignal, PlannerState
+from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
+
+__all__ = [
+    "LAYERS",
+    "LAYERS_WITH_REST",
+    "TICK_S",
+    "ClipBank",
+    "Decisions",
+    "MotionUnit",
+    "Planner",
+    "PlannerConfig",
+    "PlannerSignal",
+    "PlannerState",
+    "TakeClip",
+    "UnitLibrary",
+    "Variant",
+    "load_clips",
+    "load_config",
+    "mix",
+    "mix_weights",
+    "pack_clips",
+    "rest_unit",
+]

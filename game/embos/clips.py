@@ -1,0 +1,137 @@
+"""The takes' motion, packed: one file for all takes, read without pickle and checked before use."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.core.errors import BadInput, Where
+from game.core.humanoid import REFERENCE
+
+__all__ = ["MAX_BYTES", "ClipBank", "TakeClip", "load_clips", "pack_clips"]
+
+MAX_BYTES = 256_000_000
+"""No clips file may unpack to more."""
+
+_SCALE = 32767.0
+_JOINTS = len(REFERENCE)
+
+
+@dataclass(frozen=True, eq=False)
+class TakeClip:
+    """One take on the reference skeleton: rotation (F, 41, 4) local quaternions, root (F, 3) metres of the hips."""
+
+    rotation: NDArray[np.float32]
+    root: NDArray[np.float32]
+    frame_time_s: float
+
+    def __post_init__(self) -> None:
+        frames = len(self.rotation)
+        if self.rotation.shape != (frames, _JOINTS, 4) or self.root.shape != (frames, 3) or frames < 1:
+            raise BadInput(
+                "take",
+                expected=f"(F, {_JOINTS}, 4) rotations and (F, 3) root positions",
+                seen=f"{self.rotation.shape} and {self.root.shape}",
+            )
+        if not (np.isfinite(self.rotation).all() and np.isfinite(self.root).all()):
+            raise BadInput("take", expected="finite numbers", seen="NaN or infinity")
+        if not 0.0 < self.frame_time_s < 10.0:
+            raise BadInput("take", expected="a frame time above 0 s", seen=self.frame_time_s)
+        self.rotation.setflags(write=False)
+        self.root.setflags(write=False)
+
+    @property
+    def length_s(self) -> float:
+        """Frames times frame time."""
+        return len(self.rotation) * self.frame_time_s
+
+    def frame(self, time_s: float) -> int:
+        """The nearest frame, clamped to the take."""
+        return int(np.clip(round(time_s / self.frame_time_s), 0, len(self.rotation) - 1))
+
+
+class ClipBank(Mapping[str, TakeClip]):
+    """Take name -> TakeClip; immutable."""
+
+    def __init__(self, takes: Mapping[str, TakeClip] | None = None) -> None:
+        self._takes = dict(takes or {})
+
+    def __getitem__(self, take: str) -> TakeClip:
+        return self._takes[take]
+
+    def __iter__(self) -> Any:
+        return iter(self._takes)
+
+    def __len__(self) -> int:
+        return len(self._takes)
+
+
+def pack_clips(bank: Mapping[str, TakeClip]) -> bytes:
+    """The bytes of a clips file, the same for the same takes on every run (no time stamps inside)."""
+    arrays: dict[str, NDArray[Any]] = {}
+    for name in sorted(bank):
+        take = bank[name]
+        arrays[f"{name}/rotation"] = np.round(take.rotation.astype(np.float64) * _SCALE).astype(np.int16)
+        arrays[f"{name}/root"] = take.root.astype(np.float32)
+        arrays[f"{name}/frame_time"] = np.array(take.frame_time_s)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.lib.format.write_array(member, array, allow_pickle=False)
+            entry = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, member.getvalue())
+    return buffer.getvalue()
+
+
+def load_clips(path: Path) -> ClipBank:
+    """Read a clips file. Raises BadInput where it is missing, broken, too large or of another skeleton."""
+    where = Where(path)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            unpacked = sum(entry.file_size for entry in archive.infolist())
+        if unpacked > MAX_BYTES:
+            raise BadInput("clips", where=where, expected=f"at most {MAX_BYTES} bytes", seen=unpacked)
+        with np.load(path, allow_pickle=False) as data:
+            arrays = {name: data[name] for name in data.files}
+    except BadInput:
+        raise
+    except FileNotFoundError:
+        raise BadInput("clips", where=where, expected="a file", seen="nothing", hint="run_game.py analyse") from None
+    except Exception as error:  # zipfile, zlib and numpy raise a dozen kinds for a broken archive
+        raise BadInput("clips", where=where, expected="an .npz archive", seen=str(error)) from None
+    takes: dict[str, TakeClip] = {}
+    for name in sorted({key.rpartition("/")[0] for key in arrays}):
+        try:
+            rotation, root = arrays[f"{name}/rotation"], arrays[f"{name}/root"]
+            frame_time = arrays[f"{name}/frame_time"]
+        except KeyError as error:
+            raise BadInput("clips", where=where, expected=f"{error.args[0]}", seen="nothing") from None
+        if (
+            rotation.dtype != np.int16
+            or root.dtype != np.float32
+            or frame_time.dtype.kind != "f"
+            or frame_time.size != 1
+        ):
+            raise BadInput(
+                "clips", where=Where(path, pointer=name), expected="int16 rotation, float32 root", seen=rotation.dtype
+            )
+        try:
+            turn = rotation.astype(np.float32) / np.float32(_SCALE)
+            if turn.ndim == 3 and turn.shape[-1] == 4:
+                length = np.sqrt((turn * turn).sum(-1, keepdims=True))
+                if turn.size and length.min() < 0.5:
+                    raise BadInput("take", expected="unit quaternions", seen=float(length.min()))
+                turn = turn / length
+            takes[name] = TakeClip(turn, root, float(frame_time.reshape(())))
+        except BadInput as error:
+            raise BadInput(error.message, where=Where(path, pointer=name)) from None
+    return ClipBank(takes)

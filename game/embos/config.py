@@ -1,0 +1,92 @@
+"""The planner's constants: data with the defaults of SPEC 3 to 5, each with its unit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from game.core.errors import BadInput
+from game.embos.units import LAYERS, LAYERS_WITH_REST
+from game.formats.yaml_source import Node, load_yaml
+
+__all__ = ["PlannerConfig", "load_config"]
+
+
+@dataclass(frozen=True)
+class PlannerConfig:
+    """Constants of eq. 1 to 5. Raises BadInput for values outside their ranges.
+
+    layers: upper first. continuity_floor, transition_share: 0..1; sigma_rad > 0. minimum: layer -> φ_time while
+    waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps going. spread: scales the takes' spread
+    in the random factors. rest: layer -> φ_state of its rest unit. presence: 0..1. tolerance: change of emotion
+    that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a word's moment is open.
+    """
+
+    layers: tuple[str, ...] = LAYERS
+    continuity_floor: float = 0.1
+    transition_share: float = 0.5
+    sigma_rad: float = 0.3
+    minimum: Mapping[str, float] = field(
+        default_factory=lambda: {"posture": 0.02, "gesture": 0.0005, "mannerism": 0.0005}
+    )
+    steady: float = 0.5
+    least_s: Mapping[str, float] = field(default_factory=lambda: {"posture": 1.0, "gesture": 0.25, "mannerism": 0.25})
+    spread: float = 1.0
+    rest: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LAYERS_WITH_REST, 0.02))
+    presence: float = 1.0
+    tolerance: float = 0.01
+    radius: float = 0.5
+    word_window_s: float = 0.1
+
+    def __post_init__(self) -> None:
+        if sorted(self.layers) != sorted(LAYERS):
+            raise BadInput("planner layers", expected=f"each of {', '.join(LAYERS)} once", seen=list(self.layers))
+        for name, low, high in (
+            ("continuity_floor", 0.0, 1.0),
+            ("transition_share", 0.0, 1.0),
+            ("sigma_rad", 1e-6, 100.0),
+            ("steady", 0.0, 1.0),
+            ("spread", 0.0, 10.0),
+            ("presence", 0.0, 1.0),
+            ("tolerance", 0.0, 1.0),
+            ("radius", 1e-3, 100.0),
+            ("word_window_s", 0.0, 10.0),
+        ):
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise BadInput(f"planner {name}", expected=f"{low:g} to {high:g}", seen=value)
+
+
+def load_config(path: Path) -> PlannerConfig:
+    """Read planner.yaml; a missing key keeps its default. Raises BadInput with file:line:col."""
+    root = load_yaml(path).only("layers", "continuity", "time", "state", "mixing", "words")
+    values: dict[str, object] = {}
+    layers = root.get("layers")
+    if layers:
+        values["layers"] = tuple(item.as_str() for item in layers)
+    for section, names in (
+        ("continuity", {"floor": "continuity_floor", "transition_share": "transition_share", "sigma_rad": "sigma_rad"}),
+        ("time", {"minimum": "minimum", "steady": "steady", "least_s": "least_s", "spread": "spread"}),
+        ("state", {"rest": "rest", "presence": "presence", "tolerance": "tolerance"}),
+        ("mixing", {"radius": "radius"}),
+        ("words", {"window_s": "word_window_s"}),
+    ):
+        node = root.get(section)
+        for key, value in node.only(*names).items() if node else []:
+            name = names[key.as_str()]
+            if name in ("least_s", "minimum"):
+                values[name] = _per_layer(value, LAYERS, 0.0, 60.0 if name == "least_s" else 1.0)
+            elif name == "rest":
+                values[name] = _per_layer(value, LAYERS_WITH_REST, 1e-6, 1.0)
+            else:
+                values[name] = value.as_float()
+    try:
+        return PlannerConfig(**values)  # type: ignore[arg-type]  # checked key by key above
+    except BadInput as error:
+        raise BadInput(error.message, where=root.where) from None
+
+
+def _per_layer(node: Node, layers: tuple[str, ...], low: float, high: float) -> dict[str, float]:
+    node.only(*layers)
+    return {layer: node[layer].as_float(low, high) for layer in layers}

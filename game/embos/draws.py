@@ -1,0 +1,47 @@
+"""Random numbers that depend on nothing but (seed, character, layer, how often that layer started, purpose).
+
+A counter-based generator (splitmix64's finalizer as a hash, Steele, Lea, Flood 2014) has no state to share, so a
+character's draws are the same alone and in a crowd, in any order, and after loading a save.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+__all__ = ["character_keys", "factor", "uniform"]
+
+Words = NDArray[np.uint64]
+Floats = NDArray[np.float64]
+
+_GOLDEN = 0x9E3779B97F4A7C15
+_FARTHEST = 3.0
+"""Standard deviations at which a normal draw is cut: no posture lasts ten times its length."""
+
+
+def _mix(x: Words) -> Words:
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return np.asarray(x ^ (x >> np.uint64(31)))
+
+
+def character_keys(seed: int, first: int, count: int) -> Words:
+    """(count,) keys of characters first, first + 1, … under a seed."""
+    number = np.arange(first + 1, first + 1 + count, dtype=np.uint64) * np.uint64(_GOLDEN)
+    start = np.full(count, (seed * _GOLDEN + 1) & 0xFFFFFFFFFFFFFFFF, dtype=np.uint64)
+    return _mix(_mix(start) ^ number)
+
+
+def uniform(keys: Words, layer: NDArray[np.intp], started: NDArray[np.int64], purpose: int) -> Floats:
+    """(S,) draws in (0, 1) for S events. purpose tells the draws of one event apart, 0..7."""
+    counter = (started.astype(np.uint64) * np.uint64(8) + layer.astype(np.uint64)) * np.uint64(8) + np.uint64(purpose)
+    bits = _mix(_mix(keys ^ (counter * np.uint64(_GOLDEN))) + np.uint64(purpose + 1))
+    return ((bits >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
+
+
+def factor(uniform01: Floats, spread: Floats) -> Floats:
+    """Log-normal factors with mean 1 and coefficient of variation spread (0: exactly 1). (S,), (S,) -> (S,)."""
+    sigma = np.sqrt(np.log1p(spread * spread))
+    normal = np.clip(ndtri(uniform01), -_FARTHEST, _FARTHEST)
+    return np.asarray(np.exp(sigma * normal - 0.5 * sigma * sigma))
