@@ -18,9 +18,10 @@ class PlannerConfig:
     """Constants of eq. 1 to 5. Raises BadInput for values outside their ranges.
 
     layers: upper first. continuity_floor, transition_share: 0..1; sigma_rad > 0. minimum: layer -> φ_time while
-    waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps going. spread: scales the takes' spread
-    in the random factors. rest: layer -> φ_state of its rest unit. presence: 0..1. tolerance: change of emotion
-    that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a word's moment is open.
+    waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps
+    going. spread: scales the takes' spread in the random factors. rest: layer -> φ_state of its rest unit.
+    presence: 0..1, see scores.presence. tolerance: change of emotion that makes φ_state be computed anew.
+    radius: r of eq. 5. word_window_s: seconds a word's moment stays open.
     """
 
     layers: tuple[str, ...] = LAYERS

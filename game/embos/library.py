@@ -63,7 +63,7 @@ class UnitLibrary:
 
     @classmethod
     def load(cls, path: Path) -> UnitLibrary:
-        """units.yaml and, where it stands beside it, clips.npz. Raises BadInput with the place and what was expected."""
+        """units.yaml and, where it stands beside it, clips.npz. Raises BadInput with place, expected and seen."""
         units, transitions = read_units(path)
         clips_path = path.parent / "clips.npz"
         clips = load_clips(clips_path) if clips_path.exists() else ClipBank()
