@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from game.app.afternoon import Afternoon, Bought
-from game.app.talk import TalkAssets, TalkState
+from game.app.talk import TalkAssets, TalkState, talk_env
 from game.core.errors import BadInput, Where
 from game.emotion import Feeling
 from game.market import Answer, Bargain
-from game.story import Memory, restore, resume
+from game.story import Beat, Memory, restore, resume
 from game.story import save as save_story
 
 __all__ = ["SAVE_VERSION", "load_game", "save_game"]
@@ -173,13 +173,13 @@ def _afternoon_from(reader: _Reader) -> Afternoon:
             )
             for b in reader.at("bought").items()
         ),
-        memory=None if memory.data is None else Memory.from_dict(memory.data),
+        memory=None
+        if memory.data is None
+        else Memory.from_dict(memory.data, Where(memory.path, pointer=memory.pointer)),
     )
 
 
 def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:
-    from game.app.talk import talk_env
-
     feeling, bargain, answer = reader.at("feeling"), reader.at("bargain"), reader.at("answer")
     felt = feeling.at("felt").items(6)
     if len(felt) != 6:
@@ -197,6 +197,7 @@ def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:
         visit=reader.at("visit").whole(0, 10**6),
         deal_price=reader.at("deal_price").whole(0, 10**9),
         story=story,
+        beat=Beat(node="", lines=(), choices=(), stimuli=(), ended=None),
         feeling=Feeling(
             felt=np.array([v.number(0, 1) for v in felt]),
             mask_shows=feeling.at("mask_shows").whole(0, 6),

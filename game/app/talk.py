@@ -140,7 +140,8 @@ def start_talk(
     feeling = start_feeling(assets.feelings, assets.person, _rng(seed, "mood", 0))
     bargain = start_bargain(assets.market, assets.person.patience, _rng(seed, "mark", 0), failed_visits=failed_visits)
     visit = 1 if memory is None else memory.visits + 1
-    first = TalkState(seed, item, list_price, purse, story, feeling, bargain, Beat((), (), None, (), ""), visit=visit)
+    nothing = Beat(node="", lines=(), choices=(), stimuli=(), ended=None)
+    first = TalkState(seed, item, list_price, purse, story, feeling, bargain, nothing, visit=visit)
     story, beat = advance(assets.script, story, Start(), talk_env(first, assets))
     return replace(first, story=story, beat=beat, feeling=_with_stimuli(assets, feeling, beat))
 
