@@ -1,0 +1,153 @@
+"""From a wanted emotion to faces, best first: the paper's open task (Nagai et al., section 5).
+
+A face is scored by the log-density of the wanted point under the face's Gaussian; for a wanted Gaussian by the
+negative Kullback–Leibler divergence from it; for a seven-value emotion by the log-density of its place plus the
+parts' mean affinity, because fear, anger and disgust share nearly the same valence and arousal.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from game.core import BadInput
+from game.face.model import FaceModel
+from game.face.parts import Face
+
+__all__ = ["FaceSearch", "Proposal"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A proposed face: its parts, its score (higher is better) and its own Gaussian."""
+
+    face: Face
+    score: float
+    mean: Floats
+    covariance: Floats
+
+
+class FaceSearch:
+    """All faces of a model with their Gaussians, computed once; every query is a few array operations over them.
+
+    Faces are numbered row-major over (eyes, eyebrows, mouth, skin); of equal scores (to 1e-9) the lower number wins.
+    """
+
+    def __init__(self, model: FaceModel) -> None:
+        self.model = model
+        self.counts = model.parts.counts
+        mean, covariance = model.all_faces()
+        self.mean = mean.reshape(-1, 2)
+        self.covariance = covariance.reshape(-1, 2, 2)
+        a, b, d = self.covariance[:, 0, 0], self.covariance[:, 0, 1], self.covariance[:, 1, 1]
+        determinant = a * d - b * b
+        if not (determinant > 0.0).all():
+            raise BadInput("face model", expected="positive definite covariances", seen=float(determinant.min()))
+        # Inverse covariance (F, 3) as its entries 00, 01, 11.
+        self.precision = np.stack([d, -b, a], axis=-1) / determinant[:, None]
+        self.log_determinant = np.log(determinant)
+        for array in (self.mean, self.covariance, self.precision, self.log_determinant):
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.mean)
+
+    def numbers(self, index: int) -> tuple[int, ...]:
+        """Part numbers (4,) of face ``index``."""
+        return tuple(int(i) for i in np.unravel_index(index, self.counts))
+
+    def index(self, numbers: tuple[int, ...]) -> int:
+        """The face's number from its part numbers."""
+        return int(np.ravel_multi_index(numbers, self.counts))
+
+    def score_point(self, point: ArrayLike) -> Floats:
+        """log-density (F,) of (valence, arousal) under every face."""
+        v, a = np.asarray(point, dtype=np.float64)
+        x, y = v - self.mean[:, 0], a - self.mean[:, 1]
+        p = self.precision
+        distance = p[:, 0] * x * x + 2.0 * p[:, 1] * x * y + p[:, 2] * y * y
+        return np.asarray(-0.5 * distance - 0.5 * self.log_determinant - np.log(2.0 * np.pi))
+
+    def score_gaussian(self, mean: ArrayLike, covariance: ArrayLike) -> Floats:
+        """−KL(wanted ‖ face) (F,) of a wanted Gaussian. Raises BadInput where it is not positive definite."""
+        wanted = np.asarray(covariance, dtype=np.float64)
+        determinant = float(np.linalg.det(wanted)) if wanted.shape == (2, 2) else -1.0
+        if determinant <= 0.0 or wanted[0, 0] <= 0.0:
+            raise BadInput("wanted covariance", expected="a positive definite 2×2 matrix", seen=wanted.tolist())
+        p = self.precision
+        trace = p[:, 0] * wanted[0, 0] + 2.0 * p[:, 1] * wanted[0, 1] + p[:, 2] * wanted[1, 1]
+        density = self.score_point(mean) + np.log(2.0 * np.pi)
+        return np.asarray(density - 0.5 * trace + 1.0 + 0.5 * np.log(determinant))
+
+    def score_emotion(self, emotion: ArrayLike) -> Floats:
+        """Score (F,) of a seven-value emotion: log-density of its place plus weighted mean affinity of the parts."""
+        values = np.asarray(emotion, dtype=np.float64)
+        if values.shape != (7,) or not np.isfinite(values).all() or values.min() < 0.0:
+            raise BadInput("wanted emotion", expected="seven numbers of 0 or more", seen=values.tolist())
+        total = max(float(values.sum()), 1.0)
+        parts = self.model.parts
+        score = self.score_point(values @ parts.places / total).reshape(self.counts)
+        factor = self.model.weights.affinity_weight / (len(self.counts) * total)
+        for axis, region in enumerate(parts.regions):
+            shape = [1] * len(self.counts)
+            shape[axis] = -1
+            score = score + (factor * (region.affinity @ values)).reshape(shape)
+        return score.reshape(-1)
+
+    def order(self, score: Floats, top: int, locked: Face | None = None, free: tuple[str, ...] = ()) -> Ints:
+        """Numbers of the best faces, best first, ties to the lower number. With ``locked``, only the regions named in
+        ``free`` may differ from it."""
+        if locked is not None:
+            keep = np.ones(self.counts, dtype=bool)
+            wanted = self.model.parts.numbers(locked)
+            for axis, region in enumerate(self.model.parts.regions):
+                if region.name not in free:
+                    shape = [1] * len(self.counts)
+                    shape[axis] = -1
+                    keep &= (np.arange(self.counts[axis]) == wanted[axis]).reshape(shape)
+            score = np.where(keep.reshape(-1), score, -np.inf)
+            top = min(top, int(keep.sum()))
+        top = max(1, min(top, len(score)))
+        rounded = np.round(score, 9)
+        threshold = np.partition(rounded, len(rounded) - top)[len(rounded) - top]
+        candidates = np.flatnonzero(rounded >= threshold)
+        return np.asarray(candidates[np.argsort(-rounded[candidates], kind="stable")][:top])
+
+    def best(self, score: Floats) -> int:
+        """Number of the best face, ties to the lower number."""
+        return int(np.argmax(np.round(score, 9)))
+
+    def propose(
+        self,
+        score: Floats,
+        top: int = 12,
+        diversity: float = 0.0,
+        locked: Face | None = None,
+        free: tuple[str, ...] = (),
+    ) -> list[Proposal]:
+        """The best faces, best first. ``diversity`` > 0 takes off that much score for every part that a face shares
+        with the most similar face already proposed (the standard parts count too)."""
+        if diversity <= 0.0:
+            chosen = [int(i) for i in self.order(score, top, locked, free)]
+        else:
+            pool = self.order(score, max(400, 40 * top), locked, free)
+            parts = np.stack(np.unravel_index(pool, self.counts), axis=-1)
+            shared = np.zeros(len(pool))
+            left = np.round(score[pool], 9).copy()
+            chosen = []
+            for _ in range(min(top, len(pool))):
+                pick = int(np.argmax(left - diversity * shared))
+                chosen.append(int(pool[pick]))
+                shared = np.maximum(shared, (parts == parts[pick]).sum(axis=1))
+                left[pick] = -np.inf
+        return [
+            Proposal(
+                self.model.parts.face(self.numbers(i)), float(score[i]), self.mean[i].copy(), self.covariance[i].copy()
+            )
+            for i in chosen
+        ]
