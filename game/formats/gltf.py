@@ -47,6 +47,7 @@ def read_gltf(path: Path | str, *, max_bytes: int = 256_000_000) -> GltfFile:
     _check_version(document, report)
     _check_extensions(document, report)
     buffers = Buffers(container, report, max_bytes=2 * max_bytes)
+    buffers.decode_all()
     nodes = build_nodes(document, report)
     check_scenes(document, nodes, report)
     meshes = build_meshes(document, buffers, report)
@@ -93,6 +94,9 @@ def _check_version(document: Mapping[str, Any], report: Report) -> None:
 
 def _check_extensions(document: Mapping[str, Any], report: Report) -> None:
     used = document.get("extensionsUsed", [])
+    undeclared = _extension_names(document) - set(used)
+    for name in sorted(undeclared):
+        report.note((), f"the extension {name[:60]!r} is used but not declared in extensionsUsed")
     for index, name in enumerate(document.get("extensionsRequired", [])):
         if name not in used:
             report.refuse(("extensionsRequired", index), f"{name[:60]!r} is not among extensionsUsed")
@@ -101,6 +105,21 @@ def _check_extensions(document: Mapping[str, Any], report: Report) -> None:
             report.refuse(
                 ("extensionsRequired", index), f"the file needs {name[:60]}, which is not supported", hint=hint
             )
+
+
+def _extension_names(document: Mapping[str, Any]) -> set[str]:
+    """Names of all extension objects of the document (extras are nobody's business)."""
+    names: set[str] = set()
+    stack: list[Any] = [document]
+    while stack:
+        value = stack.pop()
+        if isinstance(value, dict):
+            extensions = value.get("extensions")
+            names.update(extensions if isinstance(extensions, dict) else ())
+            stack.extend(inner for key, inner in value.items() if key not in ("extras", "extensions"))
+        elif isinstance(value, list):
+            stack.extend(value)
+    return names
 
 
 def _images(container: Container, buffers: Buffers, report: Report, max_bytes: int) -> tuple[GltfImage | None, ...]:

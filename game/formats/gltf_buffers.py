@@ -40,11 +40,20 @@ class Buffers:
         for index in range(len(self._document.get("accessors", []))):
             self._check_accessor(index)
 
+    def decode_all(self) -> None:
+        """Decode every accessor whose data is there, so that faults in the data show at load."""
+        for index, accessor in enumerate(self._document.get("accessors", [])):
+            sparse = accessor.get("sparse", {})
+            parts = (accessor, sparse.get("indices", {}), sparse.get("values", {}))
+            views = [self._document["bufferViews"][part["bufferView"]] for part in parts if "bufferView" in part]
+            if all(self._buffers[view["buffer"]] is not None for view in views):
+                self.accessor(index)
+
     def view_bytes(self, index: int) -> bytes:
         """A copy of the bytes of a buffer view."""
         view = self._document["bufferViews"][index]
         start = view.get("byteOffset", 0)
-        return bytes(self._buffers[view["buffer"]][start : start + view["byteLength"]])
+        return bytes(self._data(view["buffer"])[start : start + view["byteLength"]])
 
     def accessor(self, index: int) -> Array:
         """Decoded accessor, read-only: (count,) scalars, (count, n) vectors, (count, rows, columns) matrices.
@@ -58,8 +67,8 @@ class Buffers:
             self._decoded[index] = array
         return self._decoded[index]
 
-    def _load_buffers(self, container: Container) -> list[memoryview]:
-        buffers = []
+    def _load_buffers(self, container: Container) -> list[memoryview | None]:
+        buffers: list[memoryview | None] = []
         for index, buffer in enumerate(self._document.get("buffers", [])):
             pointer = ("buffers", index)
             if "uri" in buffer:
@@ -67,10 +76,15 @@ class Buffers:
                 data = memoryview(
                     resolve_uri(container.path, buffer["uri"], where, max_bytes=self._max_bytes, what="buffer")
                 )
-            elif index == 0 and container.binary is not None:
+            elif index == 0 and container.is_glb:
+                if container.binary is None:
+                    self._report.refuse(pointer, "a buffer without data", hint="no uri and no BIN chunk")
                 data = container.binary
             else:
-                self._report.refuse(pointer, "a buffer without data", hint="no uri and no BIN chunk")
+                # Allowed while nothing reads it: some application knows where the data is.
+                self._report.note(pointer, "a buffer without data")
+                buffers.append(None)
+                continue
             if len(data) < buffer["byteLength"]:
                 self._report.refuse(
                     (*pointer, "byteLength"), expected=f"at most {len(data)}", seen=buffer["byteLength"]
@@ -79,6 +93,12 @@ class Buffers:
             buffers.append(data[: buffer["byteLength"]])
         return buffers
 
+    def _data(self, buffer: int) -> memoryview:
+        data = self._buffers[buffer]
+        if data is None:
+            self._report.refuse(("buffers", buffer), "a buffer without data is read")
+        return data
+
     def _spend(self, size: int, pointer: tuple[str | int, ...]) -> None:
         self._budget -= size
         if self._budget < 0:
@@ -86,7 +106,7 @@ class Buffers:
 
     def _check_view(self, index: int) -> None:
         view = self._document["bufferViews"][index]
-        size = len(self._buffers[view["buffer"]])
+        size = self._document["buffers"][view["buffer"]]["byteLength"]
         end = view.get("byteOffset", 0) + view["byteLength"]
         if end > size:
             self._report.refuse(("bufferViews", index), f"ends at byte {end} of a buffer of {size}")
@@ -116,7 +136,7 @@ class Buffers:
                 pointer,
             )
         elif accessor.get("byteOffset"):
-            self._report.note((*pointer, "byteOffset"), "given without a bufferView")
+            self._report.refuse((*pointer, "byteOffset"), "given without a bufferView")
         if "sparse" in accessor:
             sparse, at = accessor["sparse"], (*pointer, "sparse")
             if sparse["count"] > accessor["count"]:
@@ -137,11 +157,13 @@ class Buffers:
         self, view_index: int, offset: int, count: int, code: int, kind: str, pointer: tuple[str | int, ...]
     ) -> None:
         view = self._document["bufferViews"][view_index]
-        element, _ = _layout(code, kind)
+        element, column = _layout(code, kind)
         stride = view.get("byteStride", element)
         if stride < element:
             self._report.refuse(pointer, f"elements of {element} bytes in a view with byteStride {stride}")
-        end = offset + stride * (count - 1) + element
+        # The last column needs no padding behind it.
+        columns, rows = TYPES[kind]
+        end = offset + stride * (count - 1) + column * (columns - 1) + rows * np.dtype(COMPONENTS[code]).itemsize
         if end > view["byteLength"]:
             self._report.refuse(pointer, f"needs {end} bytes of a view of {view['byteLength']}")
         size = np.dtype(COMPONENTS[code]).itemsize
@@ -157,7 +179,7 @@ class Buffers:
         return np.ndarray(
             (count, rows, columns),
             dtype,
-            self._buffers[view["buffer"]],
+            self._data(view["buffer"]),
             view.get("byteOffset", 0) + offset,
             (view.get("byteStride", element), dtype.itemsize, column),
         )
@@ -181,7 +203,8 @@ class Buffers:
             if places[-1] >= count or np.any(places[1:] <= places[:-1]):
                 self._report.refuse((*pointer, "sparse", "indices"), f"not increasing below the count {count}")
             data[places] = self._strided(values["bufferView"], values.get("byteOffset", 0), sparse["count"], code, kind)
-        self._check_bounds(accessor, data, pointer)
+        if "bufferView" in accessor or "sparse" in accessor:
+            self._check_bounds(accessor, data, pointer)
         if accessor.get("normalized"):
             limit = np.float32(_INTEGER_LIMITS[dtype.str[1:]])
             data = np.maximum(data.astype(np.float32) / limit, np.float32(-1.0))

@@ -12,7 +12,7 @@ import struct
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote
+from urllib.parse import unquote, unquote_to_bytes
 
 from game.core.errors import BadInput, Where
 from game.formats.files import read_bytes
@@ -31,6 +31,7 @@ class Container:
     path: Path
     document: dict[str, Any]
     binary: memoryview | None
+    is_glb: bool = False
 
 
 def read_container(path: Path, *, max_bytes: int) -> Container:
@@ -74,20 +75,22 @@ def read_container(path: Path, *, max_bytes: int) -> Container:
         at, chunks = start + length, chunks + 1
     if document is None:
         raise BadInput("GLB", where=Where(path, byte=12), expected="a JSON chunk", seen="the end of the file")
-    return Container(path, document, binary)
+    return Container(path, document, binary, is_glb=True)
 
 
 def resolve_uri(path: Path, uri: str, where: Where, *, max_bytes: int, what: str) -> bytes:
-    """The bytes behind a URI of the file at path: a base64 data URI or a file in the same folder (or below).
+    """The bytes behind a URI of the file at path: a data URI or a file in the same folder (or below).
 
     Raises BadInput for anything else: other schemes, absolute paths, "..", links that lead outside, missing files.
     """
     if uri.startswith("data:"):
         head, comma, body = uri.partition(",")
-        if not comma or not head.endswith(";base64"):
-            raise BadInput(what, where=where, expected="a base64 data URI", seen=uri[:40])
+        if not comma:
+            raise BadInput(what, where=where, expected="a data URI with a comma", seen=uri[:40])
         if len(body) > max_bytes * 4 // 3 + 4:
             raise BadInput(what, where=where, expected=f"at most {max_bytes} bytes", seen=f"about {len(body) * 3 // 4}")
+        if not head.endswith(";base64"):
+            return unquote_to_bytes(body)
         try:
             return base64.b64decode(body, validate=True)
         except (binascii.Error, ValueError) as error:

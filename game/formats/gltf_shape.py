@@ -220,8 +220,8 @@ GLTF = _object(
                     "buffer": Index("buffers"),
                     "byteOffset": _SIZE,
                     "byteLength": _COUNT,
-                    # The specification wants multiples of 4; real files have 6, and nothing depends on it.
-                    "byteStride": Number(4, 252, integer=True),
+                    # The specification wants multiples of 4; real files have 3 and 6, and nothing depends on it.
+                    "byteStride": Number(1, 252, integer=True),
                     "target": Number(integer=True),
                 },
                 "buffer",

@@ -119,7 +119,7 @@ def parse_json(data: bytes, path: Path) -> dict[str, Any]:
             "JSON with too many elements", where=Where(path), expected=f"at most {_MAX_STRUCTURE}", seen="more"
         )
     try:
-        value = json.loads(text, object_pairs_hook=_unique_object, parse_constant=_refuse_constant)
+        value = json.loads(text, object_pairs_hook=_unique_object, parse_constant=_refuse_constant, parse_float=_number)
     except json.JSONDecodeError as error:
         raise BadInput(f"JSON: {error.msg}", where=Where(path, error.lineno, error.colno)) from None
     except _BadJson as error:
@@ -186,7 +186,6 @@ def _check_items(value: Any, shape: Items, report: Report, pointer: tuple[str | 
 
 
 def _check_number(value: Any, shape: Number, report: Report, pointer: tuple[str | int, ...]) -> None:
-    # Integer-valued floats such as 5.0 are integers in JSON; they are as rare as they are suspect, and refused.
     wanted = "a whole number" if shape.integer else "a number"
     allowed = int if shape.integer else (int, float)
     if isinstance(value, bool) or not isinstance(value, allowed):
@@ -208,6 +207,12 @@ def _unique_object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         twice = next(name for name in names if names.count(name) > 1)
         raise _BadJson(f"the key {twice[:40]!r} stands twice in one object")
     return result
+
+
+def _number(text: str) -> float | int:
+    """1.0 is a whole number in JSON."""
+    value = float(text)
+    return int(value) if abs(value) < 2**53 and value.is_integer() else value
 
 
 def _refuse_constant(name: str) -> NoReturn:
