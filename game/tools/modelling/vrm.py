@@ -1,0 +1,126 @@
+"""VRM 1.0 (VRMC_vrm, VRMC_springBone) around a rig: humanoid bones, meta, expressions, look-at, chains, colliders."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE
+from game.tools.modelling.gltf import Gltf
+from game.tools.modelling.rig import Rig
+from game.tools.modelling.spec import CharacterSpec
+
+__all__ = ["EXPRESSIONS", "add_skeleton", "humanoid_extension", "spring_extension"]
+
+LICENSE_URL = "https://vrm.dev/licenses/1.0/"
+
+EXPRESSIONS = (
+    *("happy", "angry", "sad", "relaxed", "surprised", "neutral"),
+    *("aa", "ih", "ou", "ee", "oh"),
+    *("blink", "blinkLeft", "blinkRight"),
+    *("lookUp", "lookDown", "lookLeft", "lookRight"),
+)
+"""All presets of VRM 1.0."""
+
+# joint, offset from it, radius: what hair, bow and scarf must not sink into
+_COLLIDERS = (
+    ("head", tuple(HEAD_CENTRE_OFFSET + (0.0, 0.02, -0.010)), 0.150),
+    ("neck", (0.0, 0.030, 0.0), 0.050),
+    ("chest", (0.0, 0.060, 0.0), 0.100),
+)
+
+
+def add_skeleton(gltf: Gltf, rig: Rig) -> int:
+    """Append the joints (T-pose, identity rotations) as nodes 0..J-1, the chain ends, and the skin; -> root node."""
+    for joint, (name, parent) in enumerate(zip(rig.names, rig.parents, strict=True)):
+        origin = rig.position[parent] if parent >= 0 else np.zeros(3)
+        children = [i for i, p in enumerate(rig.parents) if p == joint]
+        content: dict[str, Any] = {"name": name, "translation": _numbers(rig.position[joint] - origin)}
+        if children:
+            content["children"] = children
+        gltf.node(**content)
+    for chain in rig.chains:
+        last = rig.index[chain.joints[-1]]
+        end = gltf.node(name=chain.end, translation=_numbers(chain.points[-1] - chain.points[-2]))
+        gltf.nodes[last].setdefault("children", []).append(end)
+    inverse = np.linalg.inv(rig.bind)
+    # glTF stores matrices by columns; the affine last row must be exact for validators.
+    inverse[:, 3] = (0.0, 0.0, 0.0, 1.0)
+    columns = inverse.transpose(0, 2, 1).astype(np.float32)
+    gltf.root["skins"] = [
+        {"joints": list(range(len(rig.names))), "skeleton": 0, "inverseBindMatrices": gltf.accessor(columns)}
+    ]
+    return 0
+
+
+def humanoid_extension(spec: CharacterSpec, rig: Rig) -> dict[str, Any]:
+    """VRMC_vrm. The face is vector art drawn at run time: expressions are declared for other programs by name."""
+    expression = {"isBinary": False, "overrideBlink": "none", "overrideLookAt": "none", "overrideMouth": "none"}
+    look_range = {"inputMaxValue": 90.0, "outputScale": 1.0}
+    return {
+        "specVersion": "1.0",
+        "meta": {
+            "name": spec.name,
+            "version": "1",
+            "authors": list(spec.authors),
+            "licenseUrl": LICENSE_URL,
+            "avatarPermission": "everyone",
+            "allowExcessivelyViolentUsage": False,
+            "allowExcessivelySexualUsage": False,
+            "commercialUsage": "corporation",
+            "allowPoliticalOrReligiousUsage": False,
+            "allowAntisocialOrHateUsage": False,
+            "creditNotation": "unnecessary",
+            "allowRedistribution": True,
+            "modification": "allowModificationRedistribution",
+        },
+        "humanoid": {"humanBones": {name: {"node": rig.index[name]} for name in REFERENCE.names}},
+        "firstPerson": {},
+        "lookAt": {
+            "offsetFromHeadBone": _numbers(HEAD_CENTRE_OFFSET + (0.0, -0.036, 0.10)),
+            "type": "expression",
+            "rangeMapHorizontalInner": look_range,
+            "rangeMapHorizontalOuter": look_range,
+            "rangeMapVerticalDown": look_range,
+            "rangeMapVerticalUp": look_range,
+        },
+        "expressions": {"preset": {name: dict(expression) for name in EXPRESSIONS}},
+    }
+
+
+def spring_extension(gltf: Gltf, rig: Rig) -> dict[str, Any]:
+    """VRMC_springBone: one collider group per body part, one spring per chain."""
+    where = {node.get("name"): i for i, node in enumerate(gltf.nodes)}
+    springs = []
+    group_of = {joint: k for k, (joint, _, _) in enumerate(_COLLIDERS)}
+    for chain in rig.chains:
+        joints = [
+            {
+                "node": where[name],
+                "hitRadius": chain.hit_radius_m,
+                "stiffness": chain.stiffness,
+                "gravityPower": chain.gravity,
+                "gravityDir": [0.0, -1.0, 0.0],
+                "dragForce": chain.drag,
+            }
+            for name in (*chain.joints, chain.end)
+        ]
+        spring: dict[str, Any] = {"name": chain.name, "joints": joints}
+        if chain.colliders:
+            spring["colliderGroups"] = [group_of[joint] for joint in chain.colliders]
+        springs.append(spring)
+    return {
+        "specVersion": "1.0",
+        "colliders": [
+            {"node": rig.index[joint], "shape": {"sphere": {"offset": _numbers(np.asarray(at)), "radius": radius}}}
+            for joint, at, radius in _COLLIDERS
+        ],
+        "colliderGroups": [{"name": joint, "colliders": [k]} for k, (joint, _, _) in enumerate(_COLLIDERS)],
+        "springs": springs,
+    }
+
+
+def _numbers(values: Any) -> list[float]:
+    """Rounded to a hundredth of a millimetre, so that the file reads well and repeats exactly."""
+    return [round(float(v), 6) + 0.0 for v in values]
