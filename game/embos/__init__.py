@@ -2,6 +2,8 @@
 
 from game.embos.clips import ClipBank, TakeClip, load_clips, pack_clips
 from game.embos.config import PlannerConfig, load_config
+from game.embos.cues import GestureCues, timed_tokens
+from game.embos.explain import Candidate
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.planner import TICK_S, Decisions, Planner, PlannerSignal, PlannerState
@@ -11,8 +13,10 @@ __all__ = [
     "LAYERS",
     "LAYERS_WITH_REST",
     "TICK_S",
+    "Candidate",
     "ClipBank",
     "Decisions",
+    "GestureCues",
     "MotionUnit",
     "Planner",
     "PlannerConfig",
@@ -27,4 +31,5 @@ __all__ = [
     "mix_weights",
     "pack_clips",
     "rest_unit",
+    "timed_tokens",
 ]

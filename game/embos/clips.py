@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from game.core.errors import BadInput, Where
 from game.core.humanoid import REFERENCE
 
-__all__ = ["MAX_BYTES", "ClipBank", "TakeClip", "load_clips", "pack_clips"]
+__all__ = ["MAX_BYTES", "ClipBank", "TakeClip", "load_clips", "pack_clips", "same_clips"]
 
 MAX_BYTES = 256_000_000
 """No clips file may unpack to more."""
@@ -90,6 +90,23 @@ def pack_clips(bank: Mapping[str, TakeClip]) -> bytes:
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, member.getvalue())
     return buffer.getvalue()
+
+
+def same_clips(path: Path, bank: Mapping[str, TakeClip]) -> bool:
+    """Whether a file holds these takes, to within one step of the packing (compressors and libm may differ)."""
+    try:
+        stored = load_clips(path)
+    except BadInput:
+        return False
+    if sorted(stored) != sorted(bank):
+        return False
+    for name, take in bank.items():
+        old = stored[name]
+        if old.rotation.shape != take.rotation.shape or abs(old.frame_time_s - take.frame_time_s) > 1e-9:
+            return False
+        if np.abs(old.rotation - take.rotation).max() > 2.0 / _SCALE or np.abs(old.root - take.root).max() > 1e-5:
+            return False
+    return True
 
 
 def load_clips(path: Path) -> ClipBank:

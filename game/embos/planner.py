@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from game.core.errors import BadInput
 from game.embos.config import PlannerConfig
 from game.embos.draws import character_keys, factor, uniform
+from game.embos.explain import Candidate, explain
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.tables import PlannerTables, build_tables
@@ -177,6 +178,17 @@ class Planner:
             state = replace(state, words=words.copy())
         factors = self.evaluate(state, rows, words[rows], now)
         return self._apply(state, rows, factors, signal.time_s, now)
+
+    def explain(
+        self, state: PlannerState, signal: PlannerSignal, character: int, dt_s: float = TICK_S
+    ) -> list[list[Candidate]]:
+        """Why: per layer all candidates with their factors and a reason, the chosen one first (see explain.py)."""
+        return explain(self, state, signal, character, dt_s)
+
+    def with_emotion(self, state: PlannerState, emotion: Floats) -> PlannerState:
+        """The state after taking note of an emotion (n, 7), as advance would before deciding."""
+        moved = np.abs(emotion - state.emotion).max(axis=1) > self.config.tolerance
+        return self._feel(state, emotion, np.flatnonzero(moved)) if moved.any() else state
 
     def _feel(self, state: PlannerState, emotion: Floats, rows: Ints) -> PlannerState:
         """φ_state anew for the characters whose emotion has moved."""

@@ -16,7 +16,7 @@ from game.embos.findings import Findings
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["CONTACT_FRAMES", "parts", "read_units", "texts", "units_text", "words"]
+__all__ = ["CONTACT_FRAMES", "contact_frames", "one_of", "parts", "read_units", "texts", "units_text", "words"]
 
 Floats = NDArray[np.float64]
 Transitions = dict[str, dict[str, int]]
@@ -81,7 +81,7 @@ def _unit(key: Node, node: Node) -> MotionUnit:
     try:
         return MotionUnit(
             name=key.as_str(),
-            layer=_one_of(node["layer"], LAYERS),
+            layer=one_of(node["layer"], LAYERS),
             intensity=_seven(node["intensity"], 1.0),
             duration_s=_seven(node["duration_s"], _MAX_SECONDS),
             waiting_s=_seven(node["waiting_s"], _MAX_SECONDS),
@@ -109,12 +109,13 @@ def _variant(node: Node) -> Variant:
         if len(clean) != 2:
             raise clean.error(expected="[start, end] in seconds")
         clean_s = [value.as_float(start_s - 1e-6, end_s + 1e-6) for value in clean]
-    emotion = EMOTION_INDEX[_one_of(node["emotion"], EMOTIONS)]
+    emotion = EMOTION_INDEX[one_of(node["emotion"], EMOTIONS)]
     stroke_s = stroke.as_float(start_s, end_s) if stroke else None
     return Variant(emotion, node["take"].as_str(), start_s, end_s, clean_s[0], clean_s[1], stroke_s)
 
 
-def _one_of(node: Node, names: Sequence[str]) -> str:
+def one_of(node: Node, names: Sequence[str]) -> str:
+    """The text of a node, if it is one of the names. Raises BadInput with the nearest one offered."""
     name = node.as_str()
     if name not in names:
         close = nearest(name, names)
@@ -141,13 +142,13 @@ def words(node: Node) -> dict[str, tuple[str, ...]]:
 
 def parts(node: Node | None) -> frozenset[str]:
     """A list of body parts."""
-    return frozenset(_one_of(part, BODY_PARTS) for part in node) if node else frozenset()
+    return frozenset(one_of(part, BODY_PARTS) for part in node) if node else frozenset()
 
 
 def contact_frames(node: Node) -> dict[str, str]:
     """``{left_hand: chest}``: hand -> the frame in which its place must be kept."""
     node.only("left_hand", "right_hand")
-    return {key.as_str(): _one_of(value, CONTACT_FRAMES) for key, value in node.items()}
+    return {key.as_str(): one_of(value, CONTACT_FRAMES) for key, value in node.items()}
 
 
 def units_text(units: Iterable[MotionUnit], transitions: Mapping[str, Mapping[str, int]]) -> str:

@@ -1,0 +1,118 @@
+"""Turn annotated takes into motion units: units.yaml and clips.npz (EMBOS, section 4).
+
+Examples:
+  run_game.py analyse                         remake assets/motion from its takes
+  run_game.py analyse --check                 compare with what is there; exit 1 if it differs
+  run_game.py analyse my_takes --out my_takes/units.yaml
+A folder of takes holds NAME.yaml and NAME.bvh per take; behaviours.yaml stands in it or beside it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from game.core import ASSETS, EMOTIONS
+from game.core.errors import BadInput, Where
+from game.embos.analysis import annotated_s, shares, transitions, units_of
+from game.embos.annotations import Take, read_takes
+from game.embos.clips import pack_clips, same_clips
+from game.embos.findings import Findings
+from game.embos.repertoire import read_repertoire
+from game.embos.statistics import ALPHA
+from game.embos.units import LAYERS, MotionUnit
+from game.embos.units_file import units_text
+from game.formats.files import write_text
+
+__all__ = ["add_arguments", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The command's grammar."""
+    motion = ASSETS / "motion"
+    parser.add_argument("takes", nargs="?", type=Path, default=motion / "takes", help="folder of takes")
+    parser.add_argument("--behaviours", type=Path, help="the repertoire (default: behaviours.yaml in or beside TAKES)")
+    parser.add_argument("--out", type=Path, help="units file (default: units.yaml beside TAKES), clips.npz with it")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if the files would change")
+    parser.add_argument("--alpha", type=float, default=ALPHA, help="importance against universality in eq. 2")
+    parser.add_argument("--json", action="store_true", help="machine-readable result")
+
+
+def run(args: argparse.Namespace) -> int:
+    """0 good, 1 findings or a difference, 2 a file that cannot be read. Nothing is written unless all is good."""
+    folder: Path = args.takes
+    out: Path = args.out or folder.resolve().parent / "units.yaml"
+    if not 0.0 <= args.alpha <= 1.0:
+        raise BadInput("--alpha", expected="a number from 0 to 1", seen=args.alpha)
+    findings = Findings()
+    inside = folder / "behaviours.yaml"
+    beside = folder.resolve().parent / "behaviours.yaml"
+    repertoire = read_repertoire(args.behaviours or (inside if inside.exists() else beside), findings)
+    takes = read_takes(folder, repertoire, findings)
+    if len(findings):
+        return _report(findings, as_json=args.json)
+    units = units_of(takes, repertoire, args.alpha)
+    for layer in LAYERS:
+        if not any(unit.layer == layer for unit in units):
+            findings.add(BadInput("takes", where=Where(folder), expected=f"spans of the layer {layer}", seen="none"))
+    if len(findings):
+        return _report(findings, as_json=args.json)
+    text = units_text(units, transitions(takes))
+    bank = {take.name: take.clip for take in takes}
+    clips = out.parent / "clips.npz"
+    differs = [str(out)] if not out.exists() or out.read_bytes() != text.encode() else []
+    differs += [str(clips)] if not same_clips(clips, bank) else []
+    if differs and not args.check:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        temporary = clips.with_name(f".{clips.name}.new")
+        temporary.write_bytes(pack_clips(bank))
+        write_text(out, text)
+        temporary.replace(clips)
+    _summary(takes, units, out, differs, check=args.check, as_json=args.json)
+    return 1 if args.check and differs else 0
+
+
+def _report(findings: Findings, *, as_json: bool) -> int:
+    if as_json:
+        print(json.dumps({"findings": [error.message for error in findings.items]}, ensure_ascii=False))
+    for error in findings.items if not as_json else []:
+        print(error.message, file=sys.stderr)
+    if not as_json:
+        print(f"{len(findings)} findings; nothing was written", file=sys.stderr)
+    return 2 if findings.broken else 1
+
+
+def _summary(
+    takes: list[Take], units: list[MotionUnit], out: Path, differs: list[str], *, check: bool, as_json: bool
+) -> None:
+    share = shares(units)
+    if as_json:
+        result = {
+            "out": str(out),
+            "differs": differs,
+            "takes": {t.name: {"length_s": t.clip.length_s, "annotated_s": annotated_s([t])} for t in takes},
+            "units": {
+                u.name: {
+                    "layer": u.layer,
+                    "share": {e: float(round(share[i, k], 6)) for k, e in enumerate(EMOTIONS) if u.exists[k]},
+                    "intensity": {e: float(round(u.intensity[k], 6)) for k, e in enumerate(EMOTIONS) if u.exists[k]},
+                }
+                for i, u in enumerate(units)
+            },
+        }
+        print(json.dumps(result, ensure_ascii=False))
+        return
+    length = sum(take.clip.length_s for take in takes)
+    for layer in LAYERS:
+        mine = [u for u in units if u.layer == layer]
+        print(f"{layer:10} {len(mine):3} units from {sum(len(u.variants) for u in mine):4} spans")
+    for k, emotion in enumerate(EMOTIONS):
+        best = np.argsort(-share[:, k], kind="stable")[:4]
+        shown = [f"{units[i].name} {100 * share[i, k]:.0f} %" for i in best if share[i, k] > 0]
+        print(f"{emotion:10} " + ", ".join(shown))
+    verb = ("differs: " + ", ".join(differs)) if check and differs else ("unchanged" if not differs else "written")
+    print(f"{len(takes)} takes, {length:.0f} s -> {out}: {verb}")

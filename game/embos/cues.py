@@ -1,0 +1,118 @@
+"""Gesture words in a spoken line: which units they call up, and when (EMBOS, section 3.2; stroke synchrony: McNeill).
+
+A gesture's stroke falls on its word, so its window opens earlier by the time the unit needs to reach its stroke.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.embos.library import UnitLibrary
+
+__all__ = ["GestureCues", "timed_tokens"]
+
+Floats = NDArray[np.float64]
+
+_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+_BY_SUBSTRING = frozenset({"ja", "zh", "ko"})
+"""Languages written without spaces between words."""
+
+
+def timed_tokens(text: str, start_s: float, length_s: float, language: str = "en") -> list[tuple[str, float]]:
+    """(token, time) of a line, time shared out by the characters before each token.
+
+    Languages without spaces give one token per character position: the rest of the line from there, so that a
+    word of any length can be found at its own place.
+    """
+    letters = max(len(text), 1)
+    if language in _BY_SUBSTRING:
+        return [(text[i:], start_s + length_s * i / letters) for i in range(len(text))]
+    return [(m.group(), start_s + length_s * m.start() / letters) for m in _WORD.finditer(text)]
+
+
+def _normal(word: str) -> str:
+    return unicodedata.normalize("NFKC", word).casefold().replace("’", "'")
+
+
+def _forms(word: str) -> frozenset[str]:
+    """A word with its simple inflections: plural and possessive."""
+    base = _normal(word)
+    forms = {base, base + "s", base + "'s", base + "s'"}
+    if base.endswith(("s", "x", "z", "ch", "sh")):
+        forms.add(base + "es")
+    if base.endswith("y") and base[-2:-1] not in set("aeiou"):
+        forms.add(base[:-1] + "ies")
+    return frozenset(forms)
+
+
+@dataclass(frozen=True, eq=False)
+class GestureCues:
+    """When the words of one line fall. gesture: (C,) column of library.gestures; time_s: (C,) its word's moment;
+    count: G. Sorted by time."""
+
+    gesture: NDArray[np.intp]
+    time_s: Floats
+    count: int
+
+    @classmethod
+    def silent(cls, library: UnitLibrary) -> GestureCues:
+        """No line, no cue."""
+        return cls(np.zeros(0, dtype=np.intp), np.zeros(0), len(library.gestures))
+
+    @classmethod
+    def from_tokens(
+        cls, library: UnitLibrary, tokens: Iterable[tuple[str, float]], language: str = "en"
+    ) -> GestureCues:
+        """Cues of (token, moment in seconds) pairs.
+
+        Where words are spaced, whole words match without regard to case, with plural and possessive; a unit's
+        "word" may be several words. Elsewhere a token matches a word it starts with.
+        """
+        timed = [(_normal(token), time_s) for token, time_s in tokens]
+        found: list[tuple[float, int]] = []
+        for column, unit in enumerate(library.gestures):
+            for word in (library.units[unit].words or {}).get(language, ()):
+                found += [(time_s, column) for time_s in _moments(word, timed, language)]
+        found = sorted(set(found))
+        return cls(
+            np.array([column for _, column in found], dtype=np.intp),
+            np.array([time_s for time_s, _ in found], dtype=np.float64),
+            len(library.gestures),
+        )
+
+    @classmethod
+    def from_text(
+        cls, library: UnitLibrary, text: str, start_s: float, length_s: float, language: str = "en"
+    ) -> GestureCues:
+        """Cues of a line spoken from start_s for length_s."""
+        return cls.from_tokens(library, timed_tokens(text, start_s, length_s, language), language)
+
+    def factors(self, time_s: float, lead_s: Floats | None = None, window_s: float = 0.1) -> Floats:
+        """(G,) word factor: 1 where a cue's window is open, else 0.
+
+        lead_s: (G,) seconds from start to stroke of each gesture (UnitLibrary.stroke_lead_s). The window is
+        centred on the moment at which a start puts the stroke on the word.
+        """
+        result = np.zeros(self.count)
+        if self.gesture.size:
+            at = self.time_s if lead_s is None else self.time_s - lead_s[self.gesture]
+            result[self.gesture[np.abs(time_s - at) <= 0.5 * window_s]] = 1.0
+        return result
+
+
+def _moments(word: str, timed: Sequence[tuple[str, float]], language: str) -> list[float]:
+    if language in _BY_SUBSTRING:
+        wanted = _normal(word)
+        return [time_s for token, time_s in timed if wanted and token.startswith(wanted)]
+    wanted_words = _WORD.findall(_normal(word))
+    if not wanted_words:
+        return []
+    forms = [_forms(part) for part in wanted_words]
+    last = len(timed) - len(forms) + 1
+    return [timed[i][1] for i in range(last) if all(timed[i + j][0] in form for j, form in enumerate(forms))]

@@ -1,0 +1,158 @@
+"""Why a unit plays: every candidate with its four factors, its score and a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from game.core.emotion_space import EMOTIONS
+
+if TYPE_CHECKING:
+    from game.embos.planner import Factors, Planner, PlannerSignal, PlannerState
+
+__all__ = ["Candidate", "explain"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One unit in one layer's competition. unit: index into library.units; the factors are those of eq. 1;
+    source: take and span the unit's strongest variant comes from, "" for rest."""
+
+    layer: str
+    unit: int
+    name: str
+    continuity: float
+    linkage: float
+    time: float
+    state: float
+    score: float
+    chosen: bool
+    reason: str
+    source: str
+
+
+def explain(
+    planner: Planner, state: PlannerState, signal: PlannerSignal, character: int, dt_s: float
+) -> list[list[Candidate]]:
+    """The decision ``planner.advance(state, signal, dt_s)`` takes for one character, layer by layer.
+
+    The chosen candidate stands first in its layer, the others follow by score. Give the state from before the
+    tick to learn why a unit started, the state after it to learn why it stays. Changes nothing.
+    """
+    t = planner.tables
+    rows = np.array([character])
+    state = planner.with_emotion(state, signal.emotion)
+    factors = planner.evaluate(state, rows, signal.words[rows], signal.time_s + 0.5 * dt_s)
+    result: list[list[Candidate]] = []
+    for at, layer in enumerate(t.layers):
+        candidates: list[Candidate] = []
+        for place in range(t.width):
+            slot = at * t.width + place
+            unit = int(t.unit[slot])
+            if unit >= 0:
+                candidates.append(
+                    Candidate(
+                        layer=layer,
+                        unit=unit,
+                        name=planner.library.units[unit].name,
+                        continuity=float(factors.continuity[0, at, place]),
+                        linkage=float(factors.linkage[0, at, place]),
+                        time=float(factors.time[0, at, place]),
+                        state=float(factors.state[0, at, place]),
+                        score=float(factors.score[0, at, place]),
+                        chosen=slot == factors.chosen[0, at],
+                        reason=_reason(planner, state, factors, character, at, place, signal.time_s),
+                        source=_source(planner, state, character, slot),
+                    )
+                )
+        result.append(sorted(candidates, key=lambda c: (not c.chosen, -c.score)))
+    return result
+
+
+def _name(planner: Planner, slot: int) -> str:
+    unit = int(planner.tables.unit[slot]) if slot < planner.tables.slots else -1
+    return planner.library.units[unit].name if unit >= 0 else "nothing"
+
+
+def _blockers(planner: Planner, factors: Factors, at: int, slot: int) -> str:
+    place = slot - at * planner.tables.width
+    above = [int(factors.chosen[0, upper]) for upper in range(at)]
+    return " and ".join(_name(planner, u) for u in above if planner.tables.blocks[u, at, place] == 0.0)
+
+
+def _reason(
+    planner: Planner, state: PlannerState, factors: Factors, character: int, at: int, place: int, time_s: float
+) -> str:
+    t = planner.tables
+    slot, running = at * t.width + place, int(state.running[character, at])
+    chosen = int(factors.chosen[0, at])
+    waits_s = float(state.wait_s[character, slot]) - time_s
+    waiting = factors.time[0, at, place] == t.minimum[slot]
+    if slot != chosen:
+        if factors.linkage[0, at, place] == 0.0:
+            return f"blocked by linkage with {_blockers(planner, factors, at, slot)}"
+        if slot in t.gesture_slots and factors.state[0, at, place] == 0.0:
+            return "its word is not being said, or the emotion never showed it"
+        if factors.state[0, at, place] <= 0.0:
+            return "never shown in what is felt"
+        if waiting:
+            return f"waits {max(waits_s, 0.0):.1f} s more"
+        return "scores less"
+    if slot == running:
+        if factors.within[0, at]:
+            left_s = float(state.end_s[character, at]) - time_s
+            if factors.score[0, at].max() > factors.score[0, at, place]:
+                return f"kept: started less than {t.least_s[at]:g} s ago"
+            return f"kept: still within its duration, {max(left_s, 0.0):.1f} s left"
+        if t.rest[slot]:
+            return "rest: nothing else scores more"
+        if waiting:
+            return "kept past its duration: everything else waits or suits less"
+        return "starts again: its waiting time is over and nothing scores more"
+    if running >= t.slots:
+        return "first choice: " + _because(planner, factors, at, place)
+    before = _name(planner, running)
+    if factors.linkage[0, at, running - at * t.width] == 0.0:
+        blockers = _blockers(planner, factors, at, running)
+        return f"{before} is blocked by {blockers}; {_because(planner, factors, at, place)}"
+    if t.rest[running]:
+        return f"{_name(planner, slot)} beats rest: {_because(planner, factors, at, place)}"
+    ended = "gave way" if factors.within[0, at] else "ended"
+    return f"{before} {ended}; {_name(planner, slot)} best because {_because(planner, factors, at, place)}"
+
+
+def _because(planner: Planner, factors: Factors, at: int, place: int) -> str:
+    """The factor in which the winner is furthest ahead of the runner-up."""
+    score = factors.score[0, at].copy()
+    score[place] = -1.0
+    second = int(score.argmax())
+    if score[second] <= 0.0:
+        return "nothing else may play"
+    ratio = {
+        "it suits the emotion": factors.state[0, at, place] / max(factors.state[0, at, second], 1e-9),
+        "it follows easily": factors.continuity[0, at, place] / max(factors.continuity[0, at, second], 1e-9),
+        "it need not wait": factors.time[0, at, place] / max(factors.time[0, at, second], 1e-9),
+    }
+    best = max(ratio, key=lambda reason: ratio[reason])
+    return f"{best} more than {_name(planner, at * planner.tables.width + second)}"
+
+
+def _source(planner: Planner, state: PlannerState, character: int, slot: int) -> str:
+    """Take and span of the strongest variant: the one being played, or the first that would be."""
+    library, t = planner.library, planner.tables
+    unit = int(t.unit[slot])
+    at = slot // t.width
+    weights = library.mix_weights(state.emotion[character], np.array(unit), planner.config.radius)
+    pick = 0.0
+    if state.running[character, at] == slot:
+        weights = state.decisions.emotion_weights[character, at]
+        pick = float(state.decisions.variant_pick[character, at])
+    if not weights.any():
+        return ""
+    emotion = int(weights.argmax())
+    variant = library.variant(unit, emotion, pick)
+    if variant is None:
+        return ""
+    return f"{variant.take} {variant.start_s:.2f}–{variant.end_s:.2f} s ({EMOTIONS[emotion]} {weights[emotion]:.2f})"
