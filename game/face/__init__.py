@@ -1,8 +1,15 @@
 """The anime face: parts and what they mean, the face for an emotion, its life over time, its triangles."""
 
+from game.face.asset import FaceAsset, FaceTiming, load_face
 from game.face.drawing import tessellate
+from game.face.inverse import FaceSearch, Proposal
 from game.face.mesh import DrawList, Layer
+from game.face.model import FaceModel, Weights, load_weights, log_density, whole_face
 from game.face.params import FIELDS, INDEX, REGIONS, FaceParams, Field, face_params
+from game.face.parts import Face, NamedExpression, Parts, load_expressions, load_parts
+from game.face.ratings import AxisFit, fit_gaussian, fit_weights
+from game.face.speech import VISEMES, VisemeTrack, viseme_track
+from game.face.state import FaceDecision, FaceSignal, FaceState, advance_face, explain_face, start_face
 from game.face.style import DEFAULT_STYLE, FaceStyle
 
 __all__ = [
@@ -10,11 +17,38 @@ __all__ = [
     "FIELDS",
     "INDEX",
     "REGIONS",
+    "VISEMES",
+    "AxisFit",
     "DrawList",
+    "Face",
+    "FaceAsset",
+    "FaceDecision",
+    "FaceModel",
     "FaceParams",
+    "FaceSearch",
+    "FaceSignal",
+    "FaceState",
     "FaceStyle",
+    "FaceTiming",
     "Field",
     "Layer",
+    "NamedExpression",
+    "Parts",
+    "Proposal",
+    "VisemeTrack",
+    "Weights",
+    "advance_face",
+    "explain_face",
     "face_params",
+    "fit_gaussian",
+    "fit_weights",
+    "load_expressions",
+    "load_face",
+    "load_parts",
+    "load_weights",
+    "log_density",
+    "start_face",
     "tessellate",
+    "viseme_track",
+    "whole_face",
 ]

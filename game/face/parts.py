@@ -134,7 +134,7 @@ def _pair(node: Node, low: float, high: float) -> tuple[float, float]:
 
 
 def _read_region(name: str, node: Node) -> Region:
-    names = [key.raw for key in node.keys()]
+    names = [key.raw for key, _ in node.items()]
     if not names or names[0] != "standard":
         raise node.error(f"region {name}", expected="the part 'standard' first")
     if len(names) > 64:
