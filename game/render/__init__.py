@@ -1,1 +1,32 @@
+"""Drawing: GL device, meshes on the GPU, toon passes, the baked scene, faces, text and interface."""
 
+from game.render.camera import CLOSEUP, HERO, Camera
+from game.render.device import Device
+from game.render.hud import Colour, Hud, rgba
+from game.render.levels import DEFAULT, LEVELS, Level, level_named, pick_level
+from game.render.model import CharacterMesh, CharacterModel, StaticMesh
+from game.render.renderer import Renderer
+from game.render.text import FontSet, MissingFont
+from game.render.view import FrameView
+
+__all__ = [
+    "CLOSEUP",
+    "DEFAULT",
+    "HERO",
+    "LEVELS",
+    "Camera",
+    "CharacterMesh",
+    "CharacterModel",
+    "Colour",
+    "Device",
+    "FontSet",
+    "FrameView",
+    "Hud",
+    "Level",
+    "MissingFont",
+    "Renderer",
+    "StaticMesh",
+    "level_named",
+    "pick_level",
+    "rgba",
+]

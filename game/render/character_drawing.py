@@ -1,0 +1,223 @@
+"""One person on the GPU: skinned once per frame into buffers that shading, outline and overlay share."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from game.render.device import PREMULTIPLIED, Device, Owner, layout, set_uniforms
+from game.render.levels import Level
+from game.render.model import MAX_JOINTS, CharacterMesh, CharacterModel, ShadowMesh
+from game.render.silhouette import SilhouetteFinder
+
+__all__ = ["CharacterDrawing"]
+
+_CLASSES = {"hair": "HAIR", "face": "FACE", "skin": "SKIN", "gloss": "GLOSS", "cloth": "", "flat": ""}
+_MARGIN_PX = 6  # outline, feather and rounding outside the mesh's own box
+
+
+class CharacterDrawing(Owner):
+    """Buffers and programs of one person at one quality level.
+
+    Per frame: ``pose`` (joint matrices), ``cast`` (shadow map), ``draw`` (colour), ``draw_over`` (brows over the hair).
+    The Frame block must be bound; the face texture is given to the draw calls.
+    """
+
+    def __init__(self, device: Device, model: CharacterModel, level: Level) -> None:
+        super().__init__()
+        self._context = device.context
+        self._mesh = mesh = model.mesh(level.triangles)
+        self._joints = self.own(device.context.buffer(reserve=MAX_JOINTS * 48, dynamic=True))
+        self._finder = SilhouetteFinder(mesh.edges, mesh.triangle) if device.software else None
+        self._make_skinning(device, mesh)
+        self._make_drawing(device, mesh, level)
+        self._make_outline(device, mesh)
+        self._make_over(device, mesh)
+        self._make_shadow(device, model.shadow, level)
+
+    def _buffer(self, array: NDArray[np.generic]) -> moderngl.Buffer:
+        return self.own(self._context.buffer(np.ascontiguousarray(array)))
+
+    def _make_skinning(self, device: Device, mesh: CharacterMesh) -> None:
+        count = len(mesh.position)
+        program = self.own(device.program("skin.vert.glsl", varyings=["clip", "terms", "shadow_place", "line"]))
+        place = self._buffer(np.hstack([mesh.position, mesh.normal, mesh.outline[:, None]]).astype(np.float32))
+        bones = self._buffer(np.hstack([mesh.joint, mesh.weight]))
+        self._skinning = self.own(
+            device.vertex_array(
+                program,
+                [
+                    layout(program, place, position="3f", normal="3f", outline="1f"),
+                    layout(program, bones, joint="4u1", weight="4f1"),
+                ],
+            )
+        )
+        self._captured = [self.own(device.context.buffer(reserve=count * 16)) for _ in range(4)]
+        # Transform feedback writes no pixels but GL wants a complete framebuffer bound, which EGL without a
+        # surface does not have.
+        pixel = self.own(device.context.renderbuffer((1, 1)))
+        self._anywhere = self.own(device.context.framebuffer([pixel]))
+
+    def _make_drawing(self, device: Device, mesh: CharacterMesh, level: Level) -> None:
+        clip, terms, place, _ = self._captured
+        self._palette = self._buffer(mesh.palette)
+        self._extra = self._buffer(mesh.extra)
+        self._index = self._buffer(mesh.triangle)
+        self._draws: list[tuple[moderngl.VertexArray, int, int]] = []
+        for run in mesh.runs:
+            flags = {name: int(_CLASSES[run.kind] == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS")}
+            program = self.own(
+                device.program(
+                    "character.vert.glsl",
+                    "character.frag.glsl",
+                    defines={**flags, "TAPS": level.shadow_taps, "SHADOW_SIZE": level.shadow_size},
+                )
+            )
+            set_uniforms(program, shadow_map=1, face_texture=2)
+            array = self.own(
+                device.vertex_array(
+                    program,
+                    [
+                        layout(program, clip, clip="4f"),
+                        layout(program, terms, terms="4f"),
+                        layout(program, place, shadow_place="4f"),
+                        layout(program, self._palette, lit="3f1", shade="3f1", deep="3f1", _="3x"),
+                        layout(program, self._extra, extra="4f"),
+                    ],
+                    self._index,
+                )
+            )
+            self._draws.append((array, run.first, run.count))
+
+    def _make_outline(self, device: Device, mesh: CharacterMesh) -> None:
+        clip, _, _, line = self._captured
+        program = self.own(device.program("outline.vert.glsl", "outline.frag.glsl", "outline.geom.glsl"))
+        self._edges = self.own(device.context.buffer(np.ascontiguousarray(mesh.edges.adjacency), dynamic=True))
+        self._edge_corners = mesh.edges.adjacency.size
+        self._outline = self.own(
+            device.vertex_array(
+                program,
+                [
+                    layout(program, clip, clip="4f"),
+                    layout(program, line, line="4f"),
+                    layout(program, self._palette, _a="3x", _b="3x", deep="3f1", _c="3x"),
+                ],
+                self._edges,
+            )
+        )
+
+    def _make_over(self, device: Device, mesh: CharacterMesh) -> None:
+        """Only the triangles of the face that can carry brows, lashes, vein and sweat."""
+        kept = []
+        for run in mesh.runs:
+            if run.kind == "face":
+                triangle = mesh.triangle.reshape(-1)[run.first : run.first + run.count].reshape(-1, 3)
+                u, v, share = (mesh.extra[triangle, i] for i in range(3))
+                kept.append(triangle[((u > 0) & (u < 1) & (v > 0) & (v < 0.66) & (share > 0)).all(axis=1)])
+        triangle = np.concatenate(kept) if kept else np.zeros((0, 3), np.int32)
+        self._over: moderngl.VertexArray | None = None
+        if len(triangle):
+            program = self.own(device.program("over.vert.glsl", "over.frag.glsl"))
+            set_uniforms(program, face_texture=2)
+            self._over = self.own(
+                device.vertex_array(
+                    program,
+                    [
+                        layout(program, self._captured[0], clip="4f"),
+                        layout(program, self._extra, extra="4f"),
+                    ],
+                    self._buffer(triangle),
+                )
+            )
+
+    def _make_shadow(self, device: Device, mesh: ShadowMesh, level: Level) -> None:
+        context = device.context
+        program = self.own(device.program("shadow_character.vert.glsl", "empty.frag.glsl"))
+        place = self._buffer(np.hstack([mesh.position, mesh.push[:, None]]).astype(np.float32))
+        bones = self._buffer(np.hstack([mesh.joint, mesh.weight]))
+        self._caster = self.own(
+            device.vertex_array(
+                program,
+                [
+                    layout(program, place, position="3f", push="1f"),
+                    layout(program, bones, joint="4u1", weight="4f1"),
+                ],
+                self._buffer(mesh.triangle),
+            )
+        )
+        self.shadow_map = self.own(context.depth_texture((level.shadow_size, level.shadow_size)))
+        self.shadow_map.compare_func = "<="
+        self.shadow_map.repeat_x = self.shadow_map.repeat_y = False
+        self._shadow_target = self.own(context.framebuffer([], self.shadow_map))
+
+    def pose(
+        self, skin_matrices: NDArray[np.float32], world_to_clip: NDArray[np.float64], size: tuple[int, int]
+    ) -> tuple[int, int, int, int]:
+        """Skin the mesh. skin_matrices (j, 4, 4); returns the picture box (x, y, width, height) that encloses it."""
+        rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
+        self._joints.write(rows)
+        self._joints.bind_to_uniform_block(1)
+        self._anywhere.use()
+        self._skinning.transform(self._captured, moderngl.POINTS)
+        return self._screen_box(rows, world_to_clip, size)
+
+    def _screen_box(
+        self, rows: NDArray[np.float32], world_to_clip: NDArray[np.float64], size: tuple[int, int]
+    ) -> tuple[int, int, int, int]:
+        corners = self._mesh.joint_box
+        count = min(len(corners), len(rows))
+        world = np.einsum("jrc,jkc->jkr", rows[:count, :, :3], corners[:count]) + rows[:count, None, :, 3]
+        clip = world.reshape(-1, 3) @ world_to_clip[:, :3].T + world_to_clip[:, 3]
+        if (clip[:, 3] < 0.05).any():  # something is beside or behind the eye
+            return (0, 0, *size)
+        pixels = (clip[:, :2] / clip[:, 3:4] * 0.5 + 0.5) * size
+        low = np.clip(np.floor(pixels.min(axis=0)).astype(int) - _MARGIN_PX, 0, size)
+        high = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + _MARGIN_PX, 0, size)
+        return (int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
+
+    def cast(self) -> None:
+        """Draw the shadow map: back faces only, so that the coarse mesh does not speckle the fine one."""
+        context = self._context
+        self._shadow_target.use()
+        self._shadow_target.clear(depth=1.0)
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        context.depth_func = "<"
+        context.cull_face = "front"
+        self._caster.render()
+        context.cull_face = "back"
+
+    def draw(self, face: moderngl.Texture) -> None:
+        """Shade and outline into the bound framebuffer."""
+        context = self._context
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        context.depth_func = "<"
+        self.shadow_map.use(1)
+        face.use(2)
+        for array, first, count in self._draws:
+            array.render(vertices=count, first=first)
+        corners = self._edge_corners
+        if self._finder is not None:
+            clip = np.frombuffer(self._captured[0].read(), dtype=np.float32).reshape(-1, 4)
+            rows = self._finder.find(clip)
+            corners = rows.size
+            if corners:
+                self._edges.write(rows)
+        if corners:
+            context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+            context.blend_func = PREMULTIPLIED
+            context.fbo.depth_mask = False
+            self._outline.render(moderngl.LINES_ADJACENCY, vertices=corners)
+            context.fbo.depth_mask = True
+
+    def draw_over(self, face_over: moderngl.Texture) -> None:
+        """Draw the second face layer over the hair."""
+        if self._over is None:
+            return
+        context = self._context
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE | moderngl.BLEND)
+        context.blend_func = PREMULTIPLIED
+        context.fbo.depth_mask = False
+        face_over.use(2)
+        self._over.render()
+        context.fbo.depth_mask = True

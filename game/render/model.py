@@ -1,0 +1,242 @@
+"""Meshes as the renderer wants them: immutable arrays, parts joined by material class, palettes as vertex colours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.core.errors import BadInput
+from game.render.grading import palette_bytes
+from game.render.silhouette import Edges, find_edges
+
+__all__ = [
+    "KINDS",
+    "MAX_JOINTS",
+    "CharacterMesh",
+    "CharacterModel",
+    "Material",
+    "Part",
+    "Run",
+    "ShadowMesh",
+    "StaticMesh",
+    "joint_boxes",
+    "merge_character",
+    "merge_static",
+]
+
+Floats = NDArray[np.float32]
+KINDS = ("hair", "face", "skin", "cloth", "gloss", "flat")  # also the order of drawing: what covers most comes first
+MAX_JOINTS = 64  # rows of the Joints block in joints.glsl
+
+
+@dataclass(frozen=True)
+class Material:
+    """A palette entry: display-referred sRGB colours in 0..1 and the class that decides the shader."""
+
+    name: str
+    kind: str
+    lit: tuple[float, float, float]
+    shade: tuple[float, float, float]
+    deep: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One primitive as it comes from a file. Fields a kind of mesh does not have are None."""
+
+    group: str
+    material: Material
+    position: Floats  # (v, 3) m
+    normal: Floats  # (v, 3) unit
+    outline: Floats  # (v,) 0 none, .4-1.1
+    triangle: NDArray[np.uint32]  # (t, 3), counter-clockwise in front
+    joint: NDArray[np.uint8] | None = None  # (v, 4)
+    weight: NDArray[np.uint8] | None = None  # (v, 4), each row sums to 255
+    extra: Floats | None = None  # (v, 4): face: uv, texture share, shadow fade; hair: azimuth, height term, 0, 0
+
+
+@dataclass(frozen=True)
+class Run:
+    """Triangles of one group and one material class, side by side in the index buffer."""
+
+    group: str
+    kind: str
+    first: int  # index of the first corner
+    count: int  # number of corners
+
+
+@dataclass(frozen=True)
+class CharacterMesh:
+    """A skinned mesh of one level of detail."""
+
+    position: Floats
+    normal: Floats
+    outline: Floats
+    joint: NDArray[np.uint8]
+    weight: NDArray[np.uint8]
+    palette: NDArray[np.uint8]  # (v, 12), graded
+    extra: Floats  # (v, 4)
+    triangle: NDArray[np.int32]  # (t, 3)
+    runs: tuple[Run, ...]
+    edges: Edges
+    joint_box: Floats  # (j, 8, 3) corners of the rest-space box of each joint's vertices
+
+
+@dataclass(frozen=True)
+class ShadowMesh:
+    """The coarse, closed mesh that casts the character's shadow."""
+
+    position: Floats
+    joint: NDArray[np.uint8]
+    weight: NDArray[np.uint8]
+    push: Floats  # (v,) 1 on the head
+    triangle: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class CharacterModel:
+    """All levels of detail of one person; triangles wanted -> mesh."""
+
+    name: str
+    meshes: Mapping[int, CharacterMesh]
+    shadow: ShadowMesh
+    joint_count: int
+
+    def mesh(self, triangles: int) -> CharacterMesh:
+        """The finest mesh of at most ``triangles``, else the coarsest there is."""
+        fitting = [n for n in self.meshes if n <= triangles]
+        return self.meshes[max(fitting) if fitting else min(self.meshes)]
+
+
+@dataclass(frozen=True)
+class StaticMesh:
+    """Stall and goods: world coordinates, one buffer, runs by group and class."""
+
+    position: Floats
+    normal: Floats
+    outline: Floats
+    palette: NDArray[np.uint8]  # (v, 12), not graded: the baked picture is graded as a whole
+    triangle: NDArray[np.int32]
+    runs: tuple[Run, ...]
+    anchors: Mapping[str, tuple[float, float, float]]  # group of an item -> centre of its foot on the table, m
+
+    @property
+    def groups(self) -> frozenset[str]:
+        return frozenset(run.group for run in self.runs)
+
+
+def _join(parts: Sequence[Part]) -> tuple[NDArray[np.int32], tuple[Run, ...]]:
+    first_vertex, first_corner = 0, 0
+    triangles: list[NDArray[np.int32]] = []
+    runs: list[Run] = []
+    for part in parts:
+        triangles.append(part.triangle.astype(np.int32) + first_vertex)
+        first_vertex += len(part.position)
+        last = runs[-1] if runs else None
+        if last and (last.group, last.kind) == (part.group, part.material.kind):
+            runs[-1] = Run(last.group, last.kind, last.first, last.count + part.triangle.size)
+        else:
+            runs.append(Run(part.group, part.material.kind, first_corner, part.triangle.size))
+        first_corner += part.triangle.size
+    return np.concatenate(triangles), tuple(runs)
+
+
+def _ordered(parts: Sequence[Part]) -> list[Part]:
+    if not parts:
+        raise BadInput("mesh without parts")
+    for part in parts:
+        if part.material.kind not in KINDS:
+            raise BadInput(
+                f"material {part.material.name}", expected="class " + ", ".join(KINDS), seen=part.material.kind
+            )
+    # Nearer parts first: what they cover is then rejected by depth before it is shaded.
+    return sorted(parts, key=lambda p: (p.group, KINDS.index(p.material.kind), -float(p.position[:, 2].mean())))
+
+
+def _palette(parts: Sequence[Part], graded: bool) -> NDArray[np.uint8]:
+    rows = [palette_bytes(p.material.lit, p.material.shade, p.material.deep, graded=graded) for p in parts]
+    return np.repeat(np.stack(rows), [len(p.position) for p in parts], axis=0)
+
+
+def _freeze(*arrays: NDArray[np.generic]) -> None:
+    for array in arrays:
+        array.setflags(write=False)
+
+
+def merge_character(parts: Sequence[Part], joint_count: int) -> CharacterMesh:
+    """Join skinned parts. Raises BadInput for unknown classes, missing skinning or too many joints."""
+    if not 1 <= joint_count <= MAX_JOINTS:
+        raise BadInput("character", expected=f"1 to {MAX_JOINTS} joints", seen=joint_count)
+    parts = _ordered(parts)
+    joints, weights = [], []
+    for part in parts:
+        if part.joint is None or part.weight is None:
+            raise BadInput(f"character part {part.material.name}", expected="joints and weights", seen="none")
+        if int(part.joint.max(initial=0)) >= joint_count:
+            raise BadInput(f"part {part.material.name}", expected=f"joints below {joint_count}", seen=part.joint.max())
+        joints.append(part.joint)
+        weights.append(part.weight)
+    position = np.concatenate([p.position for p in parts])
+    joint, weight = np.concatenate(joints), np.concatenate(weights)
+    outline = np.concatenate([p.outline for p in parts])
+    extra = np.concatenate([np.zeros((len(p.position), 4), np.float32) if p.extra is None else p.extra for p in parts])
+    triangle, runs = _join(parts)
+    mesh = CharacterMesh(
+        position,
+        np.concatenate([p.normal for p in parts]),
+        outline,
+        joint,
+        weight,
+        _palette(parts, graded=True),
+        extra,
+        triangle,
+        runs,
+        find_edges(position, triangle, outline),
+        joint_boxes(position, joint, weight, joint_count),
+    )
+    _freeze(mesh.position, mesh.normal, outline, joint, weight, mesh.palette, extra, triangle, mesh.joint_box)
+    return mesh
+
+
+def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float, float]]) -> StaticMesh:
+    """Join parts that never move."""
+    parts = _ordered(parts)
+    triangle, runs = _join(parts)
+    mesh = StaticMesh(
+        np.concatenate([p.position for p in parts]),
+        np.concatenate([p.normal for p in parts]),
+        np.concatenate([p.outline for p in parts]),
+        _palette(parts, graded=False),
+        triangle,
+        runs,
+        MappingProxyType(dict(anchors)),
+    )
+    _freeze(mesh.position, mesh.normal, mesh.outline, mesh.palette, triangle)
+    return mesh
+
+
+def joint_boxes(
+    position: Floats, joint: NDArray[np.uint8], weight: NDArray[np.uint8], joint_count: int
+) -> NDArray[np.float32]:
+    """Corners (j, 8, 3) of the box around the vertices each joint moves.
+
+    A blended vertex lies in the hull of its joints' transforms of it, so the posed boxes together enclose the mesh.
+    Joints without vertices get a point of the mesh.
+    """
+    low = np.broadcast_to(position[0], (joint_count, 3)).astype(np.float32)
+    high = low.copy()
+    fresh = np.ones(joint_count, bool)
+    for column in range(4):
+        used = weight[:, column] > 0
+        for j in np.unique(joint[used, column]):
+            own = position[used & (joint[:, column] == j)]
+            a, b = own.min(axis=0), own.max(axis=0)
+            low[j] = a if fresh[j] else np.minimum(low[j], a)
+            high[j] = b if fresh[j] else np.maximum(high[j], b)
+            fresh[j] = False
+    pick = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], bool)
+    return np.where(pick[None], high[:, None], low[:, None])

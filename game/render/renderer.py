@@ -1,0 +1,174 @@
+"""The frame graph: bake what stands still, restore the box, skin once, draw the person, show, interface on top."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from game.face.mesh import DrawList
+from game.render.character_drawing import CharacterDrawing
+from game.render.device import Device, Owner
+from game.render.face_painter import FacePainter, hidden_face
+from game.render.hud import Hud
+from game.render.levels import DEFAULT, Level
+from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, Lights
+from game.render.model import CharacterModel, StaticMesh
+from game.render.scene_drawing import BakeKey, SceneDrawing
+from game.render.targets import Box, FrameTargets, copy_box, open_scissor, union
+from game.render.text import FontSet
+from game.render.view import FrameView
+
+__all__ = ["Renderer"]
+
+
+class Renderer(Owner):
+    """Draws FrameViews of one person at one stall.
+
+    ``model`` and ``stall`` may be None where nobody, or nothing, is to be drawn (menus, the bench's floor).
+    ``backdrop`` is (h, w, 3) uint8. ``level`` may be changed between frames (``set_level``).
+    """
+
+    def __init__(
+        self,
+        device: Device,
+        model: CharacterModel | None,
+        stall: StaticMesh | None = None,
+        backdrop: NDArray[np.uint8] | None = None,
+        level: Level = DEFAULT,
+        fonts: FontSet | None = None,
+    ) -> None:
+        super().__init__()
+        self.device = device
+        self._model = model
+        self._scene = self.own(SceneDrawing(device, stall, backdrop))
+        self._frame = self.own(FrameBlock(device))
+        self._lights = Lights.market()
+        self.hud = self.own(Hud(device, fonts))
+        self._hidden_face = hidden_face()
+        self._face: DrawList | None = None
+        self._targets: FrameTargets | None = None
+        self._character: CharacterDrawing | None = None
+        self._painter: FacePainter | None = None
+        self._baked: BakeKey | None = None
+        self._last_box: Box = (0, 0, 0, 0)
+        self._frames = 0
+        self.level = level
+        self.set_level(level)
+
+    def set_level(self, level: Level) -> None:
+        """Change the quality; the next frame uses it."""
+        self._drop_level()
+        self.level = level
+        if self._model is not None:
+            self._character = CharacterDrawing(self.device, self._model, level)
+            self._painter = FacePainter(self.device, level.face_size)
+
+    def _drop_level(self) -> None:
+        for part in (self._targets, self._character, self._painter):
+            if part is not None:
+                part.release()
+        self._targets = self._character = self._painter = None
+        self._baked = None
+
+    def release(self) -> None:
+        self._drop_level()
+        super().release()
+
+    def draw(self, view: FrameView) -> None:
+        """Draw one frame at the device's size, into its window or, without one, to be read back."""
+        targets = self._ensure_targets()
+        key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items)
+        whole: Box = (0, 0, *targets.size)
+        stale = whole if key != self._baked else self._last_box
+        if key != self._baked:
+            self._scene.bake(key, targets.bake, self.level.line_px)
+            self._baked = key
+        if self._character is not None and self._painter is not None:
+            self._paint_face(view, self._painter)
+            self._last_box = self._draw_character(view, self._character, self._painter, targets, stale)
+        elif stale[2]:
+            copy_box(self.device.context, targets.work, targets.bake.still, stale)
+            self._last_box = (0, 0, 0, 0)
+        changed = union(stale, self._last_box) if stale[2] else self._last_box
+        if targets.samples and changed[2]:
+            copy_box(self.device.context, targets.shown, targets.work, changed)
+        self._show(view, targets)
+        self._frames += 1
+
+    def _ensure_targets(self) -> FrameTargets:
+        targets = self._targets
+        if targets is None or targets.size != self.device.size:
+            if targets is not None:
+                targets.release()
+            samples = min(self.level.samples, self.device.max_samples)
+            self._targets = targets = FrameTargets(self.device, self.device.size, samples)
+            self._baked = None
+        return targets
+
+    def _paint_face(self, view: FrameView, painter: FacePainter) -> None:
+        if view.face is not None:
+            self._face = view.face
+        if not view.show_face:
+            painter.paint(self._hidden_face)
+        elif self._face is not None:
+            painter.paint(self._face)
+
+    def _draw_character(
+        self, view: FrameView, character: CharacterDrawing, painter: FacePainter, targets: FrameTargets, stale: Box
+    ) -> Box:
+        context, level = self.device.context, self.level
+        light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
+        world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, level.line_px)
+        box = character.pose(view.skin_matrices, world_to_clip, targets.size)
+        box = _with_shadow(box, targets.size)
+        if self._frames % level.shadow_every == 0 or stale[2] == targets.size[0]:
+            character.cast()
+        copy_box(context, targets.work, targets.bake.still, union(stale, box) if stale[2] else box)
+        targets.work.scissor = box
+        targets.work.use()
+        character.draw(painter.under)
+        self._draw_shadow_on_table(view, character, targets)
+        character.draw_over(painter.over)
+        open_scissor(targets.work)
+        return box
+
+    def _draw_shadow_on_table(self, view: FrameView, character: CharacterDrawing, targets: FrameTargets) -> None:
+        context = self.device.context
+        context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+        context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        targets.work.depth_mask = False
+        character.shadow_map.use(1)
+        targets.bake.dark.texture.use(3)
+        receiver = self._scene.receiver(view.show_stall, self.level.shadow_taps, self.level.shadow_size)
+        receiver.render(moderngl.TRIANGLE_STRIP)
+        targets.work.depth_mask = True
+
+    def _show(self, view: FrameView, targets: FrameTargets) -> None:
+        context = self.device.context
+        output = context.screen if self.device.windowed else targets.output.target
+        if self.device.windowed:
+            output.viewport = (0, 0, *targets.size)
+        output.use()
+        context.copy_framebuffer(output, targets.shown)
+        if view.hud is not None:
+            output.use()
+            self.hud.begin(targets.size)
+            view.hud(self.hud)
+            self.hud.end()
+
+    def read_pixels(self) -> NDArray[np.uint8]:
+        """The last frame as (height, width, 3) uint8, first row at the top. Only without a window."""
+        targets = self._ensure_targets()
+        source = self.device.context.screen if self.device.windowed else targets.output.target
+        width, height = targets.size
+        data = source.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
+        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
+
+
+def _with_shadow(box: Box, size: tuple[int, int]) -> Box:
+    """The box grown to the right and below by where the character's shadow falls on the table."""
+    x, y, width, height = box
+    grow_x, grow_y = size[0] // 40, size[1] // 24
+    low, right = max(0, y - grow_y), min(size[0], x + width + grow_x)
+    return (x, low, right - x, y + height - low)

@@ -1,0 +1,43 @@
+// One program per material class: branches on a flag would cost all sides of it on a software rasteriser.
+#include "toon.glsl"
+#needs SKIN FACE HAIR GLOSS
+in vec4 v_terms;
+in vec4 v_shadow;
+flat in vec3 v_lit;
+flat in vec3 v_shade;
+flat in vec3 v_deep;
+#if FACE || HAIR
+in vec4 v_extra;
+#endif
+#if FACE
+uniform sampler2D face_texture;
+#endif
+out vec4 colour;
+void main() {
+    float h = v_terms.x;
+    float sun = sunlight(v_shadow.xyz);
+#if FACE
+    sun = mix(sun, 1.0, v_extra.w);
+#endif
+    float lit_share;
+    vec3 c = three_tones(v_lit, v_shade, v_deep, h, sun, v_terms.w, FACE == 1 ? 0.030 : 0.018, lit_share);
+#if SKIN || FACE
+    c = skin_terminator(c, h, sun);
+#endif
+#if HAIR
+    float az = v_extra.x;
+    float e = v_extra.y + 0.030 * sin(az * 13.0) + 0.012 * sin(az * 37.0 + 1.0);
+    float wide = sat((e - 0.385) * 66.0) * sat((0.495 - e) * 50.0);
+    float thin = sat((e - 0.335) * 100.0) * sat((0.367 - e) * 100.0);
+    vec3 gleam = mix(v_lit * 1.45 + vec3(0.13, 0.09, 0.04), vec3(1.0, 0.80, 0.58), 0.25);
+    c = mix(c, gleam, sat(wide * 0.72 + thin * 0.35) * mix(0.35, 1.0, lit_share) * sat(v_shadow.w * 2.5 - 0.12));
+#endif
+#if GLOSS
+    c = mix(c, vec3(1.0, 0.98, 0.93), sat((h - 0.955) * 60.0) * 0.8 * sun);
+#endif
+#if FACE
+    vec4 ink = texture(face_texture, v_extra.xy) * v_extra.z;
+    c = c * (1.0 - ink.a) + ink.rgb * mix(vec3(0.90, 0.84, 0.90), vec3(1.0), max(lit_share, 0.35));
+#endif
+    colour = vec4(rims(c, v_terms.y, v_terms.z, SKIN + FACE > 0 ? 0.41 : 0.75), 1.0);
+}

@@ -1,0 +1,4 @@
+in vec3 v_ink;
+uniform sampler2D face_texture;
+out vec4 colour;
+void main() { colour = texture(face_texture, v_ink.xy) * (v_ink.z * 0.8); }

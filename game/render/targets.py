@@ -1,0 +1,92 @@
+"""The framebuffers of one picture size: the baked still picture, the moving one, and what is shown."""
+
+from __future__ import annotations
+
+import moderngl
+
+from game.render.device import Device, Owner
+
+__all__ = ["BakeTargets", "Box", "FrameTargets", "Picture", "copy_box", "open_scissor", "union"]
+
+Box = tuple[int, int, int, int]  # x, y (from below), width, height in pixels
+BAKE_SAMPLES = 4
+
+
+def union(a: Box, b: Box) -> Box:
+    """The smallest box around both."""
+    x, y = min(a[0], b[0]), min(a[1], b[1])
+    return (x, y, max(a[0] + a[2], b[0] + b[2]) - x, max(a[1] + a[3], b[1] + b[3]) - y)
+
+
+def open_scissor(target: moderngl.Framebuffer) -> None:
+    """Draw to the whole framebuffer again."""
+    target.scissor = None  # type: ignore[assignment]  # moderngl takes None; its stub forgets
+
+
+def copy_box(context: moderngl.Context, target: moderngl.Framebuffer, source: moderngl.Framebuffer, box: Box) -> None:
+    """Copy colour and depth (as far as both have it) inside the box; resolves samples. ``target`` stays bound."""
+    target.scissor = box
+    target.use()
+    context.copy_framebuffer(target, source)
+    open_scissor(target)
+    target.use()
+
+
+def _target(owner: Owner, device: Device, size: tuple[int, int], samples: int) -> moderngl.Framebuffer:
+    """A framebuffer with colour and depth."""
+    context = device.context
+    colour = owner.own(context.texture(size, 4, samples=samples))
+    depth = owner.own(context.depth_texture(size, samples=samples))
+    return owner.own(context.framebuffer([colour], depth))
+
+
+class Picture(Owner):
+    """A colour texture and the framebuffer to draw into it."""
+
+    def __init__(self, device: Device, size: tuple[int, int]) -> None:
+        super().__init__()
+        self.texture = self.own(device.context.texture(size, 4))
+        self.texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+        self.texture.repeat_x = self.texture.repeat_y = False
+        self.target = self.own(device.context.framebuffer([self.texture]))
+
+
+class BakeTargets(Owner):
+    """What baking needs and leaves behind; ``still`` has as many samples as the moving picture.
+
+    raw: ungraded scene with samples of its own; still: graded colour and depth; dark: graded, in full shadow.
+    """
+
+    def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
+        super().__init__()
+        self._context = device.context
+        # Samples can only be copied to a picture of as many samples, or of none.
+        self.raw = _target(self, device, size, min(samples or BAKE_SAMPLES, device.max_samples))
+        self.still = _target(self, device, size, samples)
+        self.plain = self.own(Picture(device, size))
+        self.dark = self.own(Picture(device, size))
+        small = (max(1, size[0] // 4), max(1, size[1] // 4))
+        self.blur = (self.own(Picture(device, small)), self.own(Picture(device, small)))
+
+    def resolve(self) -> None:
+        """Copy the raw colour to ``plain`` and the raw depth to ``still``."""
+        self._context.copy_framebuffer(self.still, self.raw)
+        self.resolve_colour()
+
+    def resolve_colour(self) -> None:
+        self._context.copy_framebuffer(self.plain.target, self.raw)
+
+
+class FrameTargets(Owner):
+    """Everything that depends on the picture's size and samples.
+
+    work: the still picture with the character drawn into it; shown: ``work`` without samples.
+    """
+
+    def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
+        super().__init__()
+        self.size, self.samples = size, samples
+        self.bake = self.own(BakeTargets(device, size, samples))
+        self.work = _target(self, device, size, samples)
+        self.shown = self.own(Picture(device, size)).target if samples else self.work
+        self.output = self.own(Picture(device, size))

@@ -1,0 +1,38 @@
+"""What the renderer is told about one frame: plain data, read only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.face.mesh import DrawList
+from game.render.camera import HERO, Camera
+
+if TYPE_CHECKING:
+    from game.render.hud import Hud
+
+__all__ = ["FrameView"]
+
+
+@dataclass(frozen=True)
+class FrameView:
+    """One frame.
+
+    skin_matrices (j, 4, 4): joint world matrix times inverse bind matrix, in the order of the model's joints.
+    face: the expression's draw list, or None for the one shown last (the same object again costs nothing).
+    show_face False draws a blank face with two guide lines. show_stall False draws the person alone in a studio.
+    hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
+    """
+
+    skin_matrices: NDArray[np.float32]
+    camera: Camera = HERO
+    face: DrawList | None = None
+    show_face: bool = True
+    show_stall: bool = True
+    hidden_items: frozenset[str] = frozenset()
+    time_s: float = 0.0
+    hud: Callable[[Hud], None] | None = None
