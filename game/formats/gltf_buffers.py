@@ -50,9 +50,11 @@ class Buffers:
                 self.accessor(index)
 
     def view_bytes(self, index: int) -> bytes:
-        """A copy of the bytes of a buffer view."""
+        """A copy of the bytes of a buffer view; none where its buffer has no data."""
         view = self._document["bufferViews"][index]
         start = view.get("byteOffset", 0)
+        if self._buffers[view["buffer"]] is None:
+            return b""
         return bytes(self._data(view["buffer"])[start : start + view["byteLength"]])
 
     def accessor(self, index: int) -> Array:
