@@ -1,1 +1,52 @@
+"""Dialogue: scripts in YAML, their expression language, their checks, and the state of a talk."""
 
+from game.story.acts import ActTable, load_acts
+from game.story.engine import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, advance, resume
+from game.story.findings import CODES, Finding, Findings
+from game.story.lint import lint_files
+from game.story.model import Item, NodeDef, Person, Script
+from game.story.reader import load_person, load_script, shipped_stalls
+from game.story.state import Memory, StoryState, begin, memory_of, restore, save
+from game.story.text import Text, wrap
+from game.story.timing import TimedText, TimedWord
+from game.story.vocabulary import ACTS, ENV, OUTCOMES, STANDING_ACTS
+
+__all__ = [
+    "ACTS",
+    "CODES",
+    "ENV",
+    "OUTCOMES",
+    "STANDING_ACTS",
+    "ActTable",
+    "Beat",
+    "Choice",
+    "Chose",
+    "Event",
+    "Finding",
+    "Findings",
+    "Item",
+    "Memory",
+    "NodeDef",
+    "Outcome",
+    "Person",
+    "Script",
+    "Spoken",
+    "Start",
+    "Stimulus",
+    "StoryState",
+    "Text",
+    "TimedText",
+    "TimedWord",
+    "advance",
+    "begin",
+    "lint_files",
+    "load_acts",
+    "load_person",
+    "load_script",
+    "memory_of",
+    "restore",
+    "resume",
+    "save",
+    "shipped_stalls",
+    "wrap",
+]

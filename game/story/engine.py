@@ -1,0 +1,404 @@
+"""Running a talk: (script, state, event, what the game knows) -> (state, beat). Pure; chance comes from the state."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from game.core.errors import BadInput
+from game.story.chance import pick_weighted, uniform
+from game.story.draw import draw_choices
+from game.story.expressions import Scope
+from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script, Speaker
+from game.story.state import StoryState
+from game.story.text import Text, fill
+from game.story.vocabulary import ENV, OUTCOMES, Value
+
+__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "advance", "resume"]
+
+# A walk from one waiting place to the next passes far fewer nodes; the reader refuses scripts that could loop.
+_MAX_STEPS = 500
+_MAX_RETURNS = 16
+
+
+@dataclass(frozen=True)
+class Start:
+    """The player steps up to the stall."""
+
+
+@dataclass(frozen=True)
+class Chose:
+    """The player takes a choice of the last beat; ``outcome`` is what the market made of it, if anything."""
+
+    choice: str
+    outcome: str | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Something happened that no choice caused."""
+
+    kind: str
+
+
+Event = Start | Chose | Outcome
+
+
+@dataclass(frozen=True)
+class Spoken:
+    """One line to speak, filled in, in both languages. ``face``: a named expression of ``Script.faces``."""
+
+    id: str
+    speaker: Speaker
+    en: str
+    ja: str
+    face: str | None = None
+    tone: str | None = None
+
+    def text(self, language: str) -> str:
+        """The words in ``en`` or ``ja``."""
+        return Text(self.en, self.ja).get(language)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A choice on the table, exactly as it will be said; ``{offer}`` is left for the amount on the dial."""
+
+    id: str
+    act: str
+    en: str
+    ja: str
+    available: bool
+    reason: Text | None
+    feel: Mapping[str, float]
+
+    def text(self, language: str) -> str:
+        """The words in ``en`` or ``ja``."""
+        return Text(self.en, self.ja).get(language)
+
+
+@dataclass(frozen=True)
+class Stimulus:
+    """``feel:`` of a choice, node or line that was passed: signed changes per emotion."""
+
+    feel: Mapping[str, float]
+    source: str
+
+
+@dataclass(frozen=True)
+class Beat:
+    """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
+
+    node: str
+    lines: tuple[Spoken, ...]
+    choices: tuple[Choice, ...]
+    stimuli: tuple[Stimulus, ...]
+    ended: str | None
+
+    def choice(self, choice_id: str) -> Choice:
+        """The offered choice with an id. Raises BadInput where it is not offered."""
+        for choice in self.choices:
+            if choice.id == choice_id:
+                return choice
+        raise BadInput("choice", expected=" | ".join(choice.id for choice in self.choices) or "none", seen=choice_id)
+
+
+def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
+    """One step of the talk.
+
+    env: names of ``ENV`` as the game knows them now, with the event's own results already in; missing ones take
+    their default. Raises BadInput for an event that does not fit: a choice that is not offered, an unknown
+    outcome, anything after the end.
+    """
+    if state.ended is not None:
+        raise BadInput("talk", expected="one that goes on", seen=f"ended: {state.ended}")
+    if isinstance(event, Start) == state.started:
+        raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
+    run = _Run(script, state, env)
+    if isinstance(event, Start):
+        came_back = script.outcomes.get("came_back") if state.visit > 1 else None
+        run.walk(came_back or script.start, None)
+    elif isinstance(event, Outcome):
+        run.walk(state.node, _known(event.kind, script))
+    else:
+        outcome = None if event.outcome is None else _known(event.outcome, script)
+        run.walk(run.choose(event.choice), outcome)
+    return run.result()
+
+
+def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
+    """The last beat again, after a load: its lines, and the same choices. Nothing advances.
+
+    Where a script was edited so that nothing of the offer is left, a new one is drawn.
+    """
+    if not state.started:
+        return state, Beat("", (), (), (), None)
+    run = _Run(script, state, env)
+    run.lines = [run.spoken(script.lines[name]) for name in state.last_lines]
+    run.node = state.node
+    usable = [(script.choices[choice], run.line_of(choice, text)) for choice, text in state.offered]
+    if state.ended is None and not any(run.usable(choice) for choice, _ in usable):
+        run.wait_at(script.nodes[state.node])
+    else:
+        run.offered = usable
+    fresh, beat = run.result()
+    return replace(fresh, last_lines=state.last_lines), beat
+
+
+def _known(kind: str, script: Script) -> str:
+    if kind not in OUTCOMES:
+        raise BadInput("outcome", expected=" | ".join(OUTCOMES), seen=kind)
+    return kind
+
+
+class _Run:
+    """The working copy of a state during one step."""
+
+    def __init__(self, script: Script, state: StoryState, env: Mapping[str, Value]) -> None:
+        self.script = script
+        self.state = state
+        self.node = state.node
+        self.counter = state.counter
+        self.ended = state.ended
+        self.returns = list(state.returns)
+        self.visits = dict(state.visits)
+        self.said = set(state.said)
+        self.chosen = set(state.chosen)
+        self.seen = {*state.earlier, *state.said, *state.chosen, *state.visits}
+        self.names: dict[str, Value] = {**_environment(env), **state.variables}
+        self.names["item"] = state.item
+        self.names["visit"] = float(state.visit)
+        self.scope = Scope(self.names, self.visits, self.seen)
+        self.lines: list[Spoken] = []
+        self.stimuli: list[Stimulus] = []
+        self.offered: list[tuple[ChoiceDef, LineDef]] = []
+
+    # --- chance ----------------------------------------------------------------------------------------------
+    def chance(self) -> float:
+        self.counter += 1
+        return uniform(self.state.seed, self.counter)
+
+    # --- walking ---------------------------------------------------------------------------------------------
+    def choose(self, choice_id: str) -> str:
+        """Take a choice: its words, effects and feelings; the node it leads to."""
+        offered = dict(self.state.offered)
+        choice = self.script.choices.get(choice_id) if choice_id in offered else None
+        if choice is None or not self.usable(choice):
+            raise BadInput("choice", expected=" | ".join(offered) or "none", seen=choice_id)
+        if not choice.silent:
+            self.say_line(self.line_of(choice_id, offered[choice_id]))
+        if choice.act != "offer" and self.names["offer_result"] != "none":
+            self.say_offer()
+        self.chosen.add(choice_id)
+        self.seen.add(choice_id)
+        self.apply(choice.effects, choice.feel, choice_id)
+        return self.branch(choice.to)
+
+    def say_offer(self) -> None:
+        """A line that carries an offer is followed by the words of an offer."""
+        for choice in self.script.standing:
+            if choice.act == "offer":
+                self.say(SayDef(choice.texts, choice.where))
+                return
+
+    def walk(self, target: str, pending: str | None) -> None:
+        """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
+        closing: str | None = None
+        for _ in range(_MAX_STEPS):
+            target = self.resolved(target)
+            node = self.script.nodes[target]
+            outcome_node = self.script.outcomes.get(pending) if pending else None
+            ending = pending is not None and OUTCOMES[pending]
+            if pending is not None and (node.waits or (node.end is not None and ending)):
+                # The market's answer comes after the reaction and before the talk goes on.
+                if ending:
+                    closing, self.returns = pending, []
+                elif outcome_node is not None:
+                    self.push(target)
+                pending = None
+                if outcome_node is not None:
+                    target = outcome_node
+                    continue
+            if closing is not None and node.waits:
+                break
+            self.enter(node)
+            if node.end is not None:
+                self.ended = node.end
+                return
+            if node.waits:
+                if self.wait_at(node) or target == self.script.home:
+                    return
+                target = HOME
+                continue
+            target = self.way_on(node)
+        if closing is not None:
+            self.ended = closing
+        else:
+            self.node = self.script.home
+            self.wait_at(self.script.nodes[self.node])
+
+    def resolved(self, target: str) -> str:
+        """A node's own name; ``back`` and ``home`` looked up."""
+        while target == BACK or target.startswith("after:"):
+            if target == BACK:
+                target = self.returns.pop() if self.returns else HOME
+            else:
+                target = self.branch(self.script.nodes[target.removeprefix("after:")].to)
+        return self.script.home if target == HOME else target
+
+    def way_on(self, node: NodeDef) -> str:
+        if node.call is None:
+            return self.branch(node.to)
+        self.push(f"after:{node.id}")
+        return node.call
+
+    def push(self, target: str) -> None:
+        self.returns.append(target)
+        del self.returns[:-_MAX_RETURNS]
+
+    def branch(self, branches: tuple[Branch, ...]) -> str:
+        for branch in branches:
+            if branch.condition is None or branch.condition.evaluate(self.scope):
+                return branch.target
+        return HOME
+
+    def enter(self, node: NodeDef) -> None:
+        self.node = node.id
+        self.visits[node.id] = self.visits.get(node.id, 0) + 1
+        self.seen.add(node.id)
+        self.apply(node.effects, node.feel, node.id)
+        for say in node.says:
+            self.say(say)
+
+    def apply(self, effects: tuple[EffectDef, ...], feel: Mapping[str, float], source: str) -> None:
+        for effect in effects:
+            self.names[effect.name] = effect.value.evaluate(self.scope)
+        if feel:
+            self.stimuli.append(Stimulus(feel, source))
+
+    # --- speaking --------------------------------------------------------------------------------------------
+    def say(self, say: SayDef) -> None:
+        if not self.holds(say):
+            return
+        fresh = [line for line in say.lines if self.holds(line) and (line.again or line.id not in self.said)]
+        if not fresh:
+            return
+        # On a later visit, what was said on an earlier one comes last.
+        new = [line for line in fresh if line.id not in self.state.earlier] or fresh
+        chosen = new[pick_weighted([line.weight for line in new], self.chance())] if len(new) > 1 else new[0]
+        self.say_line(chosen)
+
+    def say_line(self, line: LineDef) -> None:
+        if line.id in self.said and not line.again:
+            return
+        self.said.add(line.id)
+        self.seen.add(line.id)
+        self.lines.append(self.spoken(line))
+        if line.feel:
+            self.stimuli.append(Stimulus(line.feel, line.id))
+
+    def holds(self, part: SayDef | LineDef) -> bool:
+        if part.when is not None:
+            told = self.names["quality"] if self.names["tells"] else "none"
+            if part.when != ("veiled" if told == "none" else told):
+                return False
+        return part.condition is None or bool(part.condition.evaluate(self.scope))
+
+    def spoken(self, line: LineDef) -> Spoken:
+        text = self.filled(line.text)
+        return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone)
+
+    def filled(self, text: Text, *, keep: str = "") -> Text:
+        def value(name: str, language: str) -> str | None:
+            if name == keep or name not in self.names:
+                return None
+            if name == "item":
+                return self.script.items[self.state.item].name.get(language)
+            found = self.names[name]
+            if name in ENV and ENV[name].money and not isinstance(found, str):
+                return self.script.currency.text(found).get(language)
+            if isinstance(found, float):
+                return f"{found:g}"
+            return str(found).lower() if isinstance(found, bool) else found
+
+        return Text(fill(text.en, lambda name: value(name, "en")), fill(text.ja, lambda name: value(name, "ja")))
+
+    # --- choices ---------------------------------------------------------------------------------------------
+    def shown(self, choice: ChoiceDef) -> bool:
+        """Whether a choice may be seen: not used up, and its condition holds."""
+        if choice.once == "talk" and choice.id in self.chosen:
+            return False
+        if choice.once == "stall" and choice.id in self.seen:
+            return False
+        return choice.condition is None or bool(choice.condition.evaluate(self.scope))
+
+    def usable(self, choice: ChoiceDef) -> bool:
+        """Whether it may be taken as well."""
+        return self.shown(choice) and (choice.needs is None or bool(choice.needs.evaluate(self.scope)))
+
+    def wait_at(self, node: NodeDef) -> bool:
+        """Lay the choices of a node on the table; False where none can be taken."""
+        pool = [c for name in node.pools for c in self.script.pools[name] if self.usable(c)]
+        drawn, self.counter = draw_choices(pool, node.draw, self.script.acts, self.state.seed, self.counter)
+        fixed = [choice for choice in node.choices if self.shown(choice)]
+        standing = [choice for choice in self.script.standing if node.standing and self.shown(choice)]
+        self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *fixed, *standing)]
+        return any(self.usable(choice) for choice, _ in self.offered)
+
+    def variant(self, choice: ChoiceDef) -> LineDef:
+        """A wording not yet used in this talk, by chance; the first where all were."""
+        fresh = [line for line in choice.texts if line.id not in self.said and self.holds(line)]
+        if len(fresh) < 2:
+            return fresh[0] if fresh else choice.texts[0]
+        return fresh[pick_weighted([line.weight for line in fresh], self.chance())]
+
+    def line_of(self, choice_id: str, text_id: str) -> LineDef:
+        texts = self.script.choices[choice_id].texts
+        return next((line for line in texts if line.id == text_id), texts[0])
+
+    def _choice(self, choice: ChoiceDef, line: LineDef) -> Choice:
+        text = self.filled(line.text, keep="offer")
+        usable = self.usable(choice)
+        reason = None if usable or choice.reason is None else self.filled(choice.reason)
+        return Choice(choice.id, choice.act, text.en, text.ja, usable, reason, choice.feel)
+
+    def result(self) -> tuple[StoryState, Beat]:
+        offered = [] if self.ended is not None else self.offered
+        state = replace(
+            self.state,
+            started=True,
+            counter=self.counter,
+            node=self.node,
+            ended=self.ended,
+            returns=tuple(self.returns),
+            visits=self.visits,
+            said=frozenset(self.said),
+            chosen=frozenset(self.chosen),
+            variables={name: self.names[name] for name in self.script.variables},
+            offered=tuple((choice.id, line.id) for choice, line in offered),
+            last_lines=tuple(line.id for line in self.lines),
+        )
+        choices = tuple(self._choice(choice, line) for choice, line in offered)
+        return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended)
+
+
+def _environment(env: Mapping[str, Value]) -> dict[str, Value]:
+    """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
+    out: dict[str, Value] = {}
+    for name, known in ENV.items():
+        value = env.get(name, known.default)
+        try:
+            if known.type == "text":
+                if not isinstance(value, str):
+                    raise TypeError
+                out[name] = value
+            elif known.type == "bool":
+                out[name] = bool(value)
+            else:
+                out[name] = float(value)
+                if not math.isfinite(float(value)):
+                    raise TypeError
+        except (TypeError, ValueError):
+            raise BadInput(f"the name {name}", expected=f"a {known.type}", seen=value) from None
+    return out

@@ -1,0 +1,293 @@
+"""Reading the parts of a script: lines, choices, ways on, effects. Faults are noted; what can be read is returned."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from game.core.emotion_space import EMOTIONS, SIX
+from game.formats.yaml_source import Node
+from game.story.expressions import Expression, ExpressionError, Names, compile_expression
+from game.story.findings import Findings, did_you_mean
+from game.story.model import BACK, HOME, Branch, ChoiceDef, Currency, EffectDef, LineDef, SayDef, Speaker, Variable
+from game.story.source import Source
+from game.story.text import LANGUAGES, ROW_CHARS, ROWS_PER_BOX, Text, fill, slots, wrap
+from game.story.vocabulary import ACTS, ENV, STANDING_ACTS, WHEN, Type
+
+__all__ = ["Parts"]
+
+LINE_KEYS = ("id", "en", "ja", "if", "when", "speaker", "face", "tone", "note", "weight", "again", "feel")
+CHOICE_KEYS = (
+    *("id", "act", "en", "ja", "say", "to", "feel", "set", "if", "needs", "once", "silent", "weight"),
+    *("face", "tone", "note"),
+)
+_CHOICE_ROWS = 2
+_ONCE = {True: "talk", False: "never"}
+
+
+@dataclass
+class Parts:
+    """Reads parts of one script. ``names``: what expressions may mention; ``ids``: where each id was given first."""
+
+    source: Source
+    findings: Findings
+    names: Names
+    variables: Mapping[str, Variable]
+    people: Mapping[str, Speaker]
+    faces: Mapping[str, Mapping[str, float]]
+    longest_item: Text
+    currency: Currency
+    ids: dict[str, Node]
+
+    # --- words -----------------------------------------------------------------------------------------------
+    def text(self, fields: Mapping[str, Node], place: Node, rows: int, *, required: bool = True) -> Text:
+        """``en`` and ``ja`` of a line: present, not too long, with the same names in braces."""
+        words = {}
+        for language in LANGUAGES:
+            node = fields.get(language)
+            value = self.source.text(node)
+            if node is None and required:
+                self.findings.add("W_MISSING_TRANSLATION", place.where, f"no {language!r} text")
+            if node is not None and value is not None:
+                if not value.strip():
+                    self.findings.add("W_MISSING_TRANSLATION", node.where, f"the {language!r} text is empty")
+                self._check_slots(node, value)
+                self._check_length(node, value, language, rows)
+            words[language] = (value or "").strip()
+        text = Text(words["en"], words["ja"])
+        if text.en and text.ja:
+            only_en = {name for name, _ in slots(text.en)} ^ {name for name, _ in slots(text.ja)}
+            if only_en:
+                found = ", ".join(sorted(only_en))
+                self.findings.add("W_SLOT_MISMATCH", fields["ja"].where, f"in one language only: {{{found}}}")
+        return text
+
+    def _check_slots(self, node: Node, value: str) -> None:
+        place = self.source.inside(node)
+        allowed = [name for name, known in ENV.items() if not known.hidden and known.type != "bool"]
+        allowed += [name for name, variable in self.variables.items() if variable.type != "bool"]
+        for name, offset in slots(value):
+            if name in {"{", "}"}:
+                self.findings.add("E_UNKNOWN_NAME", place(offset), f"a lone {name}", "names stand in {braces}")
+            elif name not in allowed:
+                self.findings.add(
+                    "E_UNKNOWN_NAME", place(offset), f"no name {name!r} to fill in", did_you_mean(name, allowed)
+                )
+
+    def _check_length(self, node: Node, value: str, language: str, rows: int) -> None:
+        def widest(name: str) -> str | None:
+            if name == "item":
+                return self.longest_item.get(language)
+            return self.currency.text(88888).get(language) if name in ENV and ENV[name].money else "88"
+
+        wrapped = wrap(fill(value, widest), language)
+        width = ROW_CHARS[language]
+        if len(wrapped) > rows or any(len(row) > width + (2 if language == "ja" else 0) for row in wrapped):
+            self.findings.add(
+                "W_LONG_LINE",
+                node.where,
+                f"{len(wrapped)} rows of up to {max(map(len, wrapped))} characters in {language!r}",
+                f"at most {rows} rows of {width}",
+            )
+
+    # --- expressions -----------------------------------------------------------------------------------------
+    def expression(self, node: Node | None, wanted: Type | None) -> Expression | None:
+        """A checked expression; YAML numbers and true/false are expressions too."""
+        if node is None:
+            return None
+        if node.kind != "scalar":
+            self.findings.take("E_BAD_VALUE", node.error(expected="an expression"))
+            return None
+        source = node.raw.lower() if isinstance(node.value, bool) else node.raw
+        try:
+            return compile_expression(source, self.names, self.source.inside(node), wanted=wanted)
+        except ExpressionError as error:
+            self.findings.add(error.code, error.where or node.where, error.plain, error.hint)
+            return None
+
+    def effects(self, node: Node | None) -> tuple[EffectDef, ...]:
+        """``set: {name: expression}``."""
+        out = []
+        for key, value in self.source.entries(node):
+            name = str(key.value)
+            if name not in self.variables:
+                hint = did_you_mean(name, self.variables)
+                if name in ENV:
+                    hint = "this one is set by the game"
+                self.findings.add("E_UNKNOWN_NAME", key.where, f"no variable {name!r} to set", hint)
+                continue
+            expression = self.expression(value, self.variables[name].type)
+            if expression is not None:
+                out.append(EffectDef(name, expression, key.where))
+        return tuple(out)
+
+    def feel(self, node: Node | None) -> dict[str, float]:
+        """``feel: {joy: 0.2}``: signed changes of the six emotions."""
+        out = {}
+        for key, value in self.source.entries(node):
+            name = str(key.value)
+            if name not in SIX:
+                hint = "neutral is what is left" if name in EMOTIONS else did_you_mean(name, SIX)
+                self.findings.add("E_UNKNOWN_EMOTION", key.where, f"unknown emotion {name!r}", hint)
+                continue
+            amount = self.source.number(value, -1.0, 1.0)
+            if amount is not None:
+                out[name] = amount
+        return out
+
+    # --- lines -----------------------------------------------------------------------------------------------
+    def says(self, node: Node | None) -> tuple[SayDef, ...]:
+        """``lines:``: single lines, and ``any:`` groups of which one is said."""
+        out = []
+        for item in self.source.items(node):
+            if item.kind == "mapping" and "any" in item:
+                fields = self.source.mapping(item, ("any", "if", "when"))
+                lines = [self.line(line) for line in self.source.items(fields.get("any"))]
+                group = tuple(line for line in lines if line is not None)
+                condition, when = self.expression(fields.get("if"), "bool"), self._when(fields.get("when"))
+                if group:
+                    out.append(SayDef(group, item.where, condition, when))
+                else:
+                    self.findings.add("E_MISSING_KEY", item.where, "any: needs at least one line")
+            else:
+                line = self.line(item)
+                if line is not None:
+                    out.append(SayDef((line,), item.where))
+        return tuple(out)
+
+    def line(self, node: Node, speaker: Speaker = "shopkeeper", rows: int = ROWS_PER_BOX) -> LineDef | None:
+        """One line."""
+        fields = self.source.mapping(node, LINE_KEYS, ("id",), "a line")
+        if not fields:
+            return None
+        name = self.identifier(fields.get("id"))
+        text = self.text(fields, node, rows)
+        spoken_by = self.source.one_of(fields.get("speaker"), self.people, "E_BAD_VALUE", "speaker")
+        face = self.source.one_of(fields.get("face"), self.faces, "E_UNKNOWN_FACE", "expression")
+        weight = self.source.number(fields.get("weight"), 0.001, 1000.0)
+        line = LineDef(
+            id=name or "",
+            text=text,
+            where=node.where,
+            speaker=self.people[spoken_by] if spoken_by else speaker,
+            condition=self.expression(fields.get("if"), "bool"),
+            when=self._when(fields.get("when")),
+            face=face,
+            tone=self.source.text(fields.get("tone")),
+            note=self.source.text(fields.get("note")),
+            weight=1.0 if weight is None else weight,
+            again=self.source.flag(fields.get("again"), False),
+            feel=self.feel(fields.get("feel")),
+        )
+        return line if name else None
+
+    def _when(self, node: Node | None) -> str | None:
+        return self.source.one_of(node, WHEN, "E_UNKNOWN_NAME", "`when`")
+
+    def identifier(self, node: Node | None) -> str | None:
+        """An id that nobody else has."""
+        name = self.source.identifier(node)
+        if name is None or node is None:
+            return None
+        first = self.ids.get(name)
+        if first is not None and first is not node:
+            place = f"{first.where.line}:{first.where.col}"
+            self.findings.add("E_DUPLICATE_ID", node.where, f"the id {name!r} is taken", f"first used at {place}")
+            return None
+        self.ids[name] = node
+        return name
+
+    # --- choices ---------------------------------------------------------------------------------------------
+    def choices(self, node: Node | None, acts: Sequence[str] = (*ACTS, *STANDING_ACTS)) -> tuple[ChoiceDef, ...]:
+        """A list of choices; ``acts``: those allowed here."""
+        found = [self.choice(item, acts) for item in self.source.items(node)]
+        return tuple(choice for choice in found if choice is not None)
+
+    def choice(self, node: Node, acts: Sequence[str]) -> ChoiceDef | None:
+        """One choice: either its words, or ``say:`` with several wordings of it."""
+        fields = self.source.mapping(node, CHOICE_KEYS, ("id", "act"), "a choice")
+        if not fields:
+            return None
+        name = self.identifier(fields.get("id"))
+        act = self.source.one_of(fields.get("act"), acts, "E_UNKNOWN_ACT", "act")
+        texts = self._wordings(fields, node, name or "")
+        needs, reason = self._needs(fields.get("needs"))
+        weight = self.source.number(fields.get("weight"), 0.001, 1000.0)
+        choice = ChoiceDef(
+            id=name or "",
+            act=act or "",
+            texts=texts,
+            where=node.where,
+            to=self.branches(fields.get("to")) or (Branch(HOME, node.where),),
+            feel=self.feel(fields.get("feel")),
+            effects=self.effects(fields.get("set")),
+            condition=self.expression(fields.get("if"), "bool"),
+            needs=needs,
+            reason=reason,
+            once=self._once(fields.get("once")),  # type: ignore[arg-type]  # one of the three by construction
+            silent=self.source.flag(fields.get("silent"), False),
+            weight=1.0 if weight is None else weight,
+        )
+        return choice if name and act and texts else None
+
+    def _wordings(self, fields: Mapping[str, Node], node: Node, name: str) -> tuple[LineDef, ...]:
+        if "say" in fields:
+            for language in LANGUAGES:
+                if language in fields:
+                    where = fields[language].where
+                    self.findings.add("E_UNKNOWN_KEY", where, f"{language!r} beside say:", "put it into the list")
+            found = [self.line(item, "player", _CHOICE_ROWS) for item in self.source.items(fields["say"])]
+            texts = tuple(line for line in found if line is not None)
+            if not texts:
+                self.findings.add("E_MISSING_KEY", fields["say"].where, "say: needs at least one wording")
+            return texts
+        words = self.text(fields, node, _CHOICE_ROWS)
+        face = self.source.one_of(fields.get("face"), self.faces, "E_UNKNOWN_FACE", "expression")
+        tone, note = self.source.text(fields.get("tone")), self.source.text(fields.get("note"))
+        return (LineDef(name, words, node.where, "player", face=face, tone=tone, note=note),)
+
+    def _needs(self, node: Node | None) -> tuple[Expression | None, Text | None]:
+        if node is None:
+            return None, None
+        fields = self.source.mapping(node, ("if", "en", "ja"), ("if",), "needs:")
+        return self.expression(fields.get("if"), "bool"), self.text(fields, node, _CHOICE_ROWS)
+
+    def _once(self, node: Node | None) -> str:
+        if node is None:
+            return "talk"
+        if isinstance(node.value, bool):
+            return _ONCE[node.value]
+        if node.value == "stall":
+            return "stall"
+        self.findings.take("E_BAD_VALUE", node.error(expected="true, false or stall"))
+        return "talk"
+
+    # --- ways on ---------------------------------------------------------------------------------------------
+    def branches(self, node: Node | None) -> tuple[Branch, ...]:
+        """``to: node`` or ``to: [{if: …, to: node}, …, node]``."""
+        if node is None:
+            return ()
+        if node.kind != "sequence":
+            target = self.target(node)
+            return (Branch(target, node.where),) if target else ()
+        out: list[Branch] = []
+        for item in node.as_list():
+            if item.kind == "mapping":
+                fields = self.source.mapping(item, ("if", "to"), ("if", "to"), "a way on")
+                condition, target = self.expression(fields.get("if"), "bool"), self.target(fields.get("to"))
+                if condition is not None and target:
+                    out.append(Branch(target, item.where, condition))
+            else:
+                target = self.target(item)
+                if target:
+                    out.append(Branch(target, item.where))
+        if out and out[-1].condition is not None:
+            self.findings.add(
+                "W_FALLS_THROUGH", out[-1].where, "the last way on has a condition", "end the list with a plain node"
+            )
+        return tuple(out)
+
+    def target(self, node: Node | None) -> str | None:
+        """A node's id, ``back`` or ``home``."""
+        known = [*self.names.nodes, BACK, HOME]
+        return self.source.one_of(node, known, "E_MISSING_TARGET", "node")

@@ -1,0 +1,161 @@
+"""Checks of a script that can run: what is never reached, never said, told twice, or gives the feelings away."""
+
+from __future__ import annotations
+
+from game.story.checks import plain_targets
+from game.story.findings import Findings, did_you_mean
+from game.story.model import BACK, HOME, Script
+from game.story.reach import Reach, choice_conditions, conditions_of, lines_by_way
+from game.story.text import slots
+from game.story.vocabulary import ENV, OUTCOMES, STANDING_ACTS, WHEN
+
+__all__ = ["check_quality"]
+
+# GAME.md's rule for a round: up to four lines to choose from.
+_LINES_AT_A_HUB = 4
+
+
+def check_quality(script: Script, findings: Findings) -> None:
+    """Warnings and remarks about one script."""
+    reach = Reach(script)
+    _conditions(script, reach, findings)
+    _unreached(script, reach, findings)
+    _outcomes_end(script, findings)
+    _hubs(script, findings)
+    _reactions(script, findings)
+    _repeated(script, findings)
+    _unused(script, findings)
+
+
+def _conditions(script: Script, reach: Reach, findings: Findings) -> None:
+    for condition in conditions_of(script):
+        expression = condition.expression
+        for name, constants in expression.compared.items():
+            known = tuple(script.items) if name == "item" else ENV[name].values if name in ENV else ()
+            for constant in constants:
+                if isinstance(constant, str) and known and constant not in known:
+                    findings.add(
+                        "E_UNKNOWN_ITEM" if name == "item" else "W_UNKNOWN_VALUE",
+                        condition.where,
+                        f"{name} is never {constant!r}",
+                        did_you_mean(constant, [str(value) for value in known]),
+                    )
+        if not reach.holds(expression):
+            findings.add("W_NEVER", condition.where, f"never true: {expression.source!r}, for {condition.what}")
+        elif not reach.fails(expression):
+            findings.add("I_ALWAYS", condition.where, f"always true: {expression.source!r}, for {condition.what}")
+
+
+def _unreached(script: Script, reach: Reach, findings: Findings) -> None:
+    for node in script.nodes.values():
+        if node.id not in reach.nodes:
+            findings.add("W_UNREACHABLE", node.where, f"nothing leads to the node {node.id!r}")
+
+
+def _outcomes_end(script: Script, findings: Findings) -> None:
+    """An outcome that ends the talk must reach an end on every way."""
+    for kind, first in script.outcomes.items():
+        if not OUTCOMES[kind]:
+            continue
+        queue, done = [first], set()
+        while queue:
+            name = queue.pop()
+            if name in done:
+                continue
+            done.add(name)
+            node = script.nodes[name]
+            if node.waits or any(branch.target in {BACK, HOME} for branch in node.to):
+                findings.add(
+                    "W_ENDING_FALLS_BACK", node.where, f"{kind} ends the talk, but {name!r} leads back into it"
+                )
+            elif node.end is None:
+                queue.extend(plain_targets(node))
+
+
+def _hubs(script: Script, findings: Findings) -> None:
+    for node in script.nodes.values():
+        if not node.waits:
+            continue
+        pool = [choice for name in node.pools for choice in script.pools.get(name, ())]
+        always = [choice for choice in pool if choice.condition is None and choice.needs is None]
+        drawn = min(node.draw, len(pool))
+        if drawn + len(node.choices) < _LINES_AT_A_HUB:
+            findings.add(
+                "W_FEW_CHOICES",
+                node.where,
+                f"{node.id!r} offers {drawn + len(node.choices)} lines",
+                f"at least {_LINES_AT_A_HUB}",
+            )
+        acts = tuple(dict.fromkeys(choice.act for choice in always))
+        if pool and not node.choices and acts:
+            best = max(script.acts.coverage(acts_) for acts_ in script.acts.fair_sets(acts, node.draw))
+            if best < script.acts.right_for_at_least:
+                findings.add(
+                    "W_FEW_CHOICES",
+                    node.where,
+                    f"the lines that {node.id!r} can draw are right for {best} of 7 feelings",
+                    "add acts: " + ", ".join(act for act in script.acts.quality if act not in acts)[:120],
+                )
+        fixed = tuple(dict.fromkeys(c.act for c in node.choices if c.act not in STANDING_ACTS))
+        if fixed and not pool and len(script.acts.right_acts(fixed)) == 1:
+            findings.add("W_ONE_RIGHT", node.where, f"only one of the lines of {node.id!r} can be right: {fixed[0]}")
+    hidden = {name for name, known in ENV.items() if known.hidden}
+    for choice in script.all_choices():
+        for expression in choice_conditions(choice):
+            leaks = sorted(expression.names & hidden)
+            if leaks:
+                findings.add(
+                    "W_LEAK",
+                    expression.where,
+                    f"the choice {choice.id!r} is on offer by {', '.join(leaks)}: it tells what is felt",
+                )
+
+
+def _reactions(script: Script, findings: Findings) -> None:
+    """A node that speaks by how the line landed needs words for each way, said or hidden."""
+    for node in script.nodes.values():
+        ways = list(lines_by_way(node.says))
+        if not any(way for way, _, _ in ways) or any(way is None and not bound for way, bound, _ in ways):
+            continue
+        missing = [way for way in WHEN if not any(found == way and not bound for found, bound, _ in ways)]
+        if missing:
+            findings.add(
+                "W_SILENT_REACTION",
+                node.where,
+                f"{node.id!r} has nothing to say when: {', '.join(missing)}",
+                "add a line without a condition for each",
+            )
+
+
+def _repeated(script: Script, findings: Findings) -> None:
+    for language in ("en", "ja"):
+        first: dict[str, str] = {}
+        for line in script.all_lines():
+            words = " ".join(line.text.get(language).lower().split()) if getattr(line.text, language) else ""
+            if words and first.setdefault(words, line.id) != line.id:
+                findings.add(
+                    "W_REPEATED_TEXT",
+                    line.where,
+                    f"{line.id!r} says the same as {first[words]!r} ({language})",
+                    "use one id for one line, or other words",
+                )
+
+
+def _unused(script: Script, findings: Findings) -> None:
+    pools = {name for node in script.nodes.values() for name in node.pools}
+    endings = {node.end for node in script.nodes.values()}
+    names = {name for condition in conditions_of(script) for name in condition.expression.names}
+    for effects in [node.effects for node in script.nodes.values()] + [c.effects for c in script.all_choices()]:
+        for effect in effects:
+            names |= effect.value.names - {effect.name}
+    for line in script.all_lines():
+        names |= {name for name, _ in slots(line.text.en)} | {name for name, _ in slots(line.text.ja)}
+    for name, choices in script.pools.items():
+        if name not in pools and choices:
+            findings.add("W_UNUSED", choices[0].where, f"no node draws from the pool {name!r}")
+    for name, ending in script.endings.items():
+        if name not in endings:
+            findings.add("W_UNUSED", ending.where, f"no node ends with {name!r}")
+    for name, variable in script.variables.items():
+        if name not in names:
+            findings.add("W_UNUSED", variable.where, f"nothing asks for the variable {name!r}")

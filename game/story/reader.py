@@ -1,0 +1,369 @@
+"""From a YAML file to a Script: the head, the pools and the nodes, with every fault noted on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import cast
+
+from game.core.emotion_space import SIX
+from game.core.errors import BadInput, Where
+from game.core.paths import DIALOGUE
+from game.formats.files import decode_utf8, read_bytes
+from game.formats.yaml_source import Node, load_yaml
+from game.story.acts import ActTable, load_acts
+from game.story.checks import check_structure
+from game.story.expressions import Names
+from game.story.findings import Findings, did_you_mean
+from game.story.model import (
+    ChoiceDef,
+    Currency,
+    EndingDef,
+    Item,
+    NodeDef,
+    Person,
+    Script,
+    Speaker,
+    Variable,
+    VariableScope,
+)
+from game.story.parts import Parts
+from game.story.source import Source
+from game.story.text import Text
+from game.story.vocabulary import ACTS, ENV, OPTIONAL_OUTCOMES, OUTCOMES, Type
+
+__all__ = ["is_stall", "load_faces", "load_person", "load_script", "read_script", "shipped_stalls"]
+
+HEAD_KEYS = (
+    *("stall", "title", "person", "currency", "items", "start", "home", "outcomes", "endings", "variables"),
+    *("pools", "standing", "nodes", "notes"),
+)
+HEAD_REQUIRED = ("stall", "title", "person", "items", "start", "home", "outcomes", "endings", "standing", "nodes")
+NODE_KEYS = ("lines", "to", "choices", "pool", "draw", "standing", "call", "end", "set", "feel", "note")
+_TYPES: Mapping[type, Type] = {bool: "bool", int: "number", float: "number", str: "text"}
+_YEN = Currency(Text("¥{n}", "{n}円"))
+_MAX_BYTES = 2_000_000
+
+
+@dataclass(frozen=True)
+class _Surroundings:
+    """What stands beside a script: the folder with people, rules and faces."""
+
+    person: Person
+    acts: ActTable
+    faces: Mapping[str, Mapping[str, float]]
+
+
+def shipped_stalls(folder: Path = DIALOGUE) -> tuple[Path, ...]:
+    """The stall scripts of a dialogue folder, by name."""
+    return tuple(path for path in sorted(folder.glob("*.yaml")) if is_stall(path))
+
+
+def is_stall(path: Path) -> bool:
+    """Whether a file calls itself a stall; broken files do if they say so at the start of a row."""
+    text = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file"), path)
+    return any(row.startswith("stall:") for row in text.split("\n"))
+
+
+def load_script(path: Path) -> Script:
+    """Read one stall. Raises BadInput for its first error, telling how many more there are."""
+    findings = Findings()
+    script = read_script(path, findings)
+    errors = sorted(findings.errors, key=lambda f: (f.where.line or 0, f.where.col or 0))
+    if errors or script is None:
+        first = errors[0]
+        more = f"and {len(errors) - 1} more; run_game.py lint shows all" if len(errors) > 1 else None
+        hint = "; ".join(part for part in (first.hint, more) if part)
+        raise BadInput(f"{first.code} {first.message}", where=first.where, hint=hint or None)
+    return script
+
+
+def read_script(path: Path, findings: Findings, text: str | None = None) -> Script | None:
+    """Read one stall, noting all faults; None where too little is left to look further into.
+
+    A script with errors may still come back, for more checks; it must not be run.
+    """
+    if text is None:
+        try:
+            text = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file"), path)
+        except BadInput as error:
+            findings.take("E_YAML", error)
+            return None
+    source = Source(path, text, findings)
+    if source.root is None:
+        return None
+    head = source.mapping(source.root, HEAD_KEYS, HEAD_REQUIRED, "a stall")
+    around = _surroundings(head.get("person"), source, path, findings)
+    if around is None or "nodes" not in head:
+        return None
+    return _Reader(source, findings, head, around).script()
+
+
+def _surroundings(node: Node | None, source: Source, path: Path, findings: Findings) -> _Surroundings | None:
+    folder = path.parent if (path.parent / "people").is_dir() else DIALOGUE
+    name = source.identifier(node)
+    if name is None or node is None:
+        return None
+    try:
+        person = load_person(folder / "people" / f"{name}.yaml")
+        acts = load_acts(folder / "rules.yaml", person.temperament)
+        return _Surroundings(person, acts, load_faces(folder / "faces.yaml"))
+    except BadInput as error:
+        known = [file.stem for file in sorted((folder / "people").glob("*.yaml"))]
+        hint = did_you_mean(name, known) if name not in known else None
+        findings.add("E_UNKNOWN_PERSON", node.where, error.message, hint)
+        return None
+
+
+def load_person(path: Path) -> Person:
+    """Read a shopkeeper's file. Raises BadInput with file:line:col."""
+    root = load_yaml(path).only("person", "name", "temperament", "pronouns", "notes", "voice")
+    name = root["name"].only("en", "ja")
+    if root["person"].as_str() != path.stem:
+        raise root["person"].error(expected=f"the file's own name, {path.stem!r}")
+    notes = root.get("notes")
+    return Person(
+        root["person"].as_str(),
+        Text(name["en"].as_str(), name["ja"].as_str()),
+        root["temperament"].as_str(),
+        notes.as_str() if notes else "",
+        root.where,
+    )
+
+
+def load_faces(path: Path) -> dict[str, Mapping[str, float]]:
+    """Read named expressions: name -> nudges on the shown emotions. Raises BadInput with file:line:col."""
+    faces = load_yaml(path).only("faces")["faces"]
+    return {
+        key.as_str(): MappingProxyType({e.as_str(): v.as_float(-1, 1) for e, v in face.only(*SIX).items()})
+        for key, face in faces.items()
+    }
+
+
+class _Reader:
+    """One script being read."""
+
+    def __init__(self, source: Source, findings: Findings, head: Mapping[str, Node], around: _Surroundings) -> None:
+        self.source = source
+        self.findings = findings
+        self.head = head
+        self.around = around
+        self.variables = self._variables()
+        self.node_keys = self._node_keys()
+        self.items = self._items()
+        ids = {name for name, _ in _ids(head)} | set(self.node_keys)
+        types: dict[str, Type] = {name: known.type for name, known in ENV.items()}
+        types |= {name: variable.type for name, variable in self.variables.items()}
+        currency = self._currency()
+        people: dict[str, Speaker] = {"you": "player", "narrator": "narrator", around.person.id: "shopkeeper"}
+        self.parts = Parts(
+            source=source,
+            findings=findings,
+            names=Names(types, tuple(self.node_keys), frozenset(ids)),
+            variables=self.variables,
+            people=people,
+            faces=around.faces,
+            longest_item=self._longest_item(),
+            currency=currency,
+            ids={name: key for name, (key, _) in self.node_keys.items()},
+        )
+
+    def script(self) -> Script | None:
+        head, parts, source = self.head, self.parts, self.source
+        pools = self._pools()
+        standing = parts.choices(head.get("standing"))
+        endings = self._endings()
+        nodes = {name: self._node(name, key, value, pools, endings) for name, (key, value) in self.node_keys.items()}
+        title = parts.text(source.mapping(head["title"], ("en", "ja")), head["title"], 1) if "title" in head else None
+        start, home = self._known_node("start"), self._known_node("home")
+        stall = source.identifier(head.get("stall"))
+        if title is None or start is None or home is None or stall is None:
+            return None
+        script = Script(
+            stall=stall,
+            path=source.path,
+            title=title,
+            person=self.around.person,
+            currency=parts.currency,
+            items=self.items,
+            start=start,
+            home=home,
+            outcomes=self._outcomes(),
+            endings=endings,
+            variables=self.variables,
+            pools=pools,
+            standing=standing,
+            nodes=nodes,
+            faces=self.around.faces,
+            acts=self.around.acts,
+            names=parts.names,
+        )
+        check_structure(script, self.findings, head["home"].where, head.get("standing", head["home"]).where)
+        return script
+
+    # --- the head --------------------------------------------------------------------------------------------
+    def _variables(self) -> dict[str, Variable]:
+        out: dict[str, Variable] = {}
+        node = self.head.get("variables")
+        scopes = self.source.mapping(node, ("talk", "stall", "afternoon")) if node else {}
+        for scope, group in scopes.items():
+            for key, value in self.source.entries(group):
+                name = self.source.identifier(key)
+                if name is None:
+                    continue
+                if name in out or name in ENV:
+                    who = "the game" if name in ENV else "another variable"
+                    self.findings.add("E_DUPLICATE_ID", key.where, f"the name {name!r} is taken by {who}")
+                    continue
+                kind = _TYPES.get(type(value.value)) if value.kind == "scalar" else None
+                if kind is None or (kind == "number" and self.source.number(value, -1e9, 1e9) is None):
+                    if kind is None:
+                        self.findings.take("E_BAD_VALUE", value.error(expected="a number, text, true or false"))
+                    continue
+                initial = float(value.raw) if kind == "number" else cast("str | bool", value.value)
+                out[name] = Variable(name, cast(VariableScope, scope), kind, initial, key.where)
+        return out
+
+    def _items(self) -> dict[str, Item]:
+        out: dict[str, Item] = {}
+        for key, value in self.source.entries(self.head.get("items")):
+            name = self.source.identifier(key)
+            fields = self.source.mapping(value, ("name", "list_price", "note"), ("name", "list_price"), "an item")
+            price = self.source.whole(fields.get("list_price"), 1, 1_000_000)
+            words = self.source.mapping(fields["name"], ("en", "ja"), ("en", "ja")) if "name" in fields else {}
+            texts = {language: self.source.text(node) or "" for language, node in words.items()}
+            if name and price is not None and len(texts) == 2:
+                out[name] = Item(name, Text(texts["en"], texts["ja"]), price, key.where)
+        if not out and "items" in self.head:
+            self.findings.add("E_MISSING_KEY", self.head["items"].where, "a stall sells at least one thing")
+        return out
+
+    def _longest_item(self) -> Text:
+        names = [item.name for item in self.items.values()] or [Text("", "")]
+        return Text(max((n.en for n in names), key=len), max((n.ja for n in names), key=len))
+
+    def _currency(self) -> Currency:
+        node = self.head.get("currency")
+        if node is None:
+            return _YEN
+        fields = self.source.mapping(node, ("en", "ja"), ("en", "ja"), "currency")
+        texts = {}
+        for language, item in fields.items():
+            value = self.source.text(item)
+            if value is not None and "{n}" not in value:
+                self.findings.add("E_BAD_VALUE", item.where, "no {n} for the number", 'like "¥{n}"')
+            texts[language] = value or "{n}"
+        return Currency(Text(texts.get("en", "{n}"), texts.get("ja", "{n}")))
+
+    def _endings(self) -> dict[str, EndingDef]:
+        out = {}
+        for key, value in self.source.entries(self.head.get("endings")):
+            name = self.source.identifier(key)
+            caption = self.parts.text(self.source.mapping(value, ("en", "ja")), value, 3)
+            if name:
+                out[name] = EndingDef(name, caption, key.where)
+        return out
+
+    def _outcomes(self) -> dict[str, str]:
+        node = self.head.get("outcomes")
+        out: dict[str, str] = {}
+        for key, value in self.source.entries(node):
+            kind = str(key.value)
+            if kind not in OUTCOMES:
+                self.findings.add(
+                    "E_UNKNOWN_OUTCOME", key.where, f"unknown outcome {kind!r}", did_you_mean(kind, OUTCOMES)
+                )
+                continue
+            target = self.source.one_of(value, self.node_keys, "E_MISSING_TARGET", "node")
+            if target:
+                out[kind] = target
+        if node is not None:
+            given = {str(key.value) for key, _ in self.source.entries(node)}
+            for kind in OUTCOMES:
+                if kind not in given and kind not in OPTIONAL_OUTCOMES:
+                    self.findings.add("E_MISSING_OUTCOME", node.where, f"no node for the outcome {kind!r}")
+        return out
+
+    def _known_node(self, key: str) -> str | None:
+        return self.source.one_of(self.head.get(key), self.node_keys, "E_MISSING_TARGET", "node")
+
+    # --- the body --------------------------------------------------------------------------------------------
+    def _pools(self) -> dict[str, tuple[ChoiceDef, ...]]:
+        out = {}
+        for key, value in self.source.entries(self.head.get("pools")):
+            name = self.source.identifier(key)
+            if name:
+                out[name] = self.parts.choices(value, ACTS)
+        return out
+
+    def _node_keys(self) -> dict[str, tuple[Node, Node]]:
+        out: dict[str, tuple[Node, Node]] = {}
+        for key, value in self.source.entries(self.head.get("nodes")):
+            name = self.source.identifier(key)
+            if name in {"back", "home"}:
+                self.findings.add("E_BAD_ID", key.where, f"{name!r} has a meaning of its own", "choose another name")
+            elif name:
+                out[name] = (key, value)
+        return out
+
+    def _node(
+        self,
+        name: str,
+        key: Node,
+        value: Node,
+        pools: Mapping[str, Sequence[ChoiceDef]],
+        endings: Mapping[str, EndingDef],
+    ) -> NodeDef:
+        source, parts = self.source, self.parts
+        fields = source.mapping(value, NODE_KEYS)
+        choices = parts.choices(fields.get("choices"))
+        node = NodeDef(
+            id=name,
+            where=key.where,
+            says=parts.says(fields.get("lines")),
+            to=parts.branches(fields.get("to")),
+            choices=choices,
+            pools=self._pool_names(fields.get("pool"), pools),
+            draw=self._draw(fields.get("draw")),
+            standing=source.flag(fields.get("standing"), True),
+            call=source.one_of(fields.get("call"), self.node_keys, "E_MISSING_TARGET", "node"),
+            end=source.one_of(fields.get("end"), endings, "E_UNKNOWN_ENDING", "ending"),
+            effects=parts.effects(fields.get("set")),
+            feel=parts.feel(fields.get("feel")),
+        )
+        ways = [word for word in ("to", "choices", "pool", "end") if word in fields]
+        if not ways:
+            self.findings.add(
+                "E_NO_WAY_ON", key.where, f"the node {name!r} leads nowhere", "give it to:, choices:, pool: or end:"
+            )
+        elif len(ways) > 1 and ways != ["choices", "pool"]:
+            second = fields[ways[1]]
+            self.findings.add("E_UNKNOWN_KEY", second.where, f"{ways[1]!r} beside {ways[0]!r}", "a node has one way on")
+        return node
+
+    def _draw(self, node: Node | None) -> int:
+        count = self.source.whole(node, 0, len(ACTS))
+        return self.around.acts.lines_on_offer if count is None else count
+
+    def _pool_names(self, node: Node | None, pools: Mapping[str, Sequence[ChoiceDef]]) -> tuple[str, ...]:
+        if node is None:
+            return ()
+        items = node.as_list() if node.kind == "sequence" else [node]
+        names = [self.source.one_of(item, pools, "E_UNKNOWN_POOL", "pool") for item in items]
+        return tuple(name for name in names if name)
+
+
+def _ids(head: Mapping[str, Node]) -> Iterator[tuple[str, Where]]:
+    """Every ``id:`` below the head, so that ``seen('…')`` may look ahead."""
+    stack = list(head.values())
+    while stack:
+        node = stack.pop()
+        if node.kind == "mapping":
+            for key, value in node.items():
+                if key.value == "id" and isinstance(value.value, str):
+                    yield value.value, value.where
+                stack.append(value)
+        elif node.kind == "sequence":
+            stack.extend(node.as_list())

@@ -1,0 +1,255 @@
+"""Where a talk stands, as plain data: what a save holds, and what an edited script can still make sense of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from game.core.errors import BadInput, Where
+from game.story.model import Script
+from game.story.vocabulary import OUTCOMES, Value
+
+__all__ = ["Memory", "StoryState", "begin", "memory_of", "restore", "save"]
+
+SAVE_VERSION = 1
+_MAX_ENTRIES = 20_000
+_MAX_INT = 1 << 53
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What a stall keeps of earlier talks: how many there were, everything seen, and the stall's variables."""
+
+    visits: int = 0
+    seen: frozenset[str] = frozenset()
+    variables: Mapping[str, Value] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        """JSON-ready."""
+        return {"visits": self.visits, "seen": sorted(self.seen), "variables": dict(self.variables)}
+
+    @staticmethod
+    def from_dict(data: Any, where: Where) -> Memory:
+        """Raises BadInput for anything else than what ``to_dict`` writes."""
+        reader = _SaveReader(data, where)
+        return Memory(reader.whole("visits"), frozenset(reader.texts("seen")), reader.values("variables"))
+
+
+@dataclass(frozen=True)
+class StoryState:
+    """One talk. ``counter`` is the position in the stream of chance ``seed``.
+
+    offered: (choice id, id of the text it is shown with). returns: nodes to come back to, innermost last;
+    ``after:NODE`` means the way on from NODE.
+    """
+
+    stall: str
+    item: str
+    seed: int
+    visit: int = 1
+    counter: int = 0
+    node: str = ""
+    started: bool = False
+    ended: str | None = None
+    returns: tuple[str, ...] = ()
+    visits: Mapping[str, int] = field(default_factory=dict)
+    said: frozenset[str] = frozenset()
+    chosen: frozenset[str] = frozenset()
+    earlier: frozenset[str] = frozenset()
+    variables: Mapping[str, Value] = field(default_factory=dict)
+    offered: tuple[tuple[str, str], ...] = ()
+    last_lines: tuple[str, ...] = ()
+
+
+def begin(
+    script: Script,
+    item: str,
+    seed: int,
+    *,
+    memory: Memory | None = None,
+    afternoon: Mapping[str, Value] | None = None,
+) -> StoryState:
+    """A talk about one item, before its first word. Raises BadInput for an item that is not on the table.
+
+    memory: what this stall keeps of earlier talks; afternoon: values of variables that all stalls share.
+    """
+    if item not in script.items:
+        raise BadInput("item", expected=" | ".join(script.items), seen=item)
+    memory = memory or Memory()
+    kept = {**memory.variables, **(afternoon or {})}
+    return StoryState(
+        stall=script.stall,
+        item=item,
+        seed=seed & (_MAX_INT - 1),
+        visit=memory.visits + 1,
+        earlier=memory.seen,
+        variables=_variables(script, kept, scopes=("stall", "afternoon")),
+    )
+
+
+def memory_of(script: Script, state: StoryState) -> Memory:
+    """What the stall keeps of this talk and those before it."""
+    seen = state.earlier | state.said | state.chosen | frozenset(state.visits)
+    kept = {name: state.variables[name] for name, v in script.variables.items() if v.scope == "stall"}
+    return Memory(state.visit, seen, kept)
+
+
+def save(state: StoryState) -> dict[str, Any]:
+    """The state as JSON-ready data."""
+    return {
+        "version": SAVE_VERSION,
+        "stall": state.stall,
+        "item": state.item,
+        "seed": state.seed,
+        "visit": state.visit,
+        "counter": state.counter,
+        "node": state.node,
+        "started": state.started,
+        "ended": state.ended,
+        "returns": list(state.returns),
+        "visits": dict(sorted(state.visits.items())),
+        "said": sorted(state.said),
+        "chosen": sorted(state.chosen),
+        "earlier": sorted(state.earlier),
+        "variables": dict(state.variables),
+        "offered": [list(pair) for pair in state.offered],
+        "last_lines": list(state.last_lines),
+    }
+
+
+def restore(script: Script, data: Any, where: Where | None = None) -> StoryState:
+    """A saved state for a script that may have been edited since.
+
+    Ids that are gone are dropped, a node that is gone becomes the stall's main hub, variables that are gone or have
+    another type now start anew. Raises BadInput (with the JSON pointer) for what no save of this version can hold.
+    """
+    reader = _SaveReader(data, where or Where("save"))
+    if reader.whole("version") != SAVE_VERSION:
+        raise reader.error("version", f"version {SAVE_VERSION}")
+    if reader.text("stall") != script.stall:
+        raise reader.error("stall", f"the stall {script.stall!r}")
+    item = reader.text("item")
+    if item not in script.items:
+        raise reader.error("item", " | ".join(script.items))
+    started, ended = data.get("started"), data.get("ended")
+    if not isinstance(started, bool):
+        raise reader.error("started", "true or false")
+    if ended is not None and (not isinstance(ended, str) or ended not in {*script.endings, *OUTCOMES}):
+        raise reader.error("ended", "null or the name of an ending")
+    node = reader.text("node")
+    known = {*script.nodes, *(f"after:{name}" for name in script.nodes)}
+    state = StoryState(
+        stall=script.stall,
+        item=item,
+        seed=reader.whole("seed"),
+        visit=reader.whole("visit"),
+        counter=reader.whole("counter"),
+        node=node,
+        started=started,
+        ended=ended,
+        returns=tuple(name for name in reader.texts("returns") if name in known)[-16:],
+        visits=reader.counts("visits"),
+        said=frozenset(reader.texts("said")),
+        chosen=frozenset(reader.texts("chosen")),
+        earlier=frozenset(reader.texts("earlier")),
+        variables=_variables(script, reader.values("variables")),
+        offered=reader.pairs("offered"),
+        last_lines=tuple(name for name in reader.texts("last_lines") if name in script.lines),
+    )
+    return _fitted(script, state)
+
+
+def _fitted(script: Script, state: StoryState) -> StoryState:
+    """The state with its place and choices as the script knows them now."""
+    if not state.started or state.ended is not None:
+        return replace(state, offered=())
+    if state.node not in script.nodes or not script.nodes[state.node].waits:
+        return replace(state, node=script.home, offered=())
+    here = {choice.id: choice for choice in script.choices_at(script.nodes[state.node])}
+    offered = tuple(
+        (choice, text if any(line.id == text for line in here[choice].texts) else here[choice].texts[0].id)
+        for choice, text in state.offered
+        if choice in here
+    )
+    return replace(state, offered=offered)
+
+
+def _variables(
+    script: Script, kept: Mapping[str, Value], scopes: Iterable[str] = ("talk", "stall", "afternoon")
+) -> dict[str, Value]:
+    """All variables: kept values where name, scope and type still fit, initial values otherwise."""
+    allowed = set(scopes)
+    types = {"number": (int, float), "bool": (bool,), "text": (str,)}
+    out: dict[str, Value] = {}
+    for name, variable in script.variables.items():
+        value = kept.get(name)
+        fits = isinstance(value, types[variable.type]) and isinstance(value, bool) == (variable.type == "bool")
+        if variable.scope in allowed and fits and value is not None:
+            out[name] = float(value) if variable.type == "number" else value
+        else:
+            out[name] = variable.initial
+    return out
+
+
+class _SaveReader:
+    """Typed, bounded access to a save's mapping; every refusal names the JSON pointer."""
+
+    def __init__(self, data: Any, where: Where) -> None:
+        self.where = where
+        if not isinstance(data, dict):
+            raise BadInput(where=where, expected="a saved talk", seen=type(data).__name__)
+        self.data: dict[str, Any] = data
+
+    def error(self, key: str, expected: str) -> BadInput:
+        place = Where(self.where.path, pointer=f"{self.where.pointer or ''}/{key}")
+        return BadInput("save", where=place, expected=expected, seen=self.data.get(key))
+
+    def whole(self, key: str) -> int:
+        value = self.data.get(key)
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < _MAX_INT:
+            raise self.error(key, "a whole number of at least 0")
+        return value
+
+    def text(self, key: str) -> str:
+        value = self.data.get(key)
+        if not isinstance(value, str):
+            raise self.error(key, "text")
+        return value
+
+    def texts(self, key: str) -> list[str]:
+        value = self.data.get(key)
+        if not isinstance(value, list) or len(value) > _MAX_ENTRIES or not all(isinstance(item, str) for item in value):
+            raise self.error(key, "a list of texts")
+        return value
+
+    def pairs(self, key: str) -> tuple[tuple[str, str], ...]:
+        value = self.data.get(key)
+        good = isinstance(value, list) and len(value) <= _MAX_ENTRIES
+        if not good or not all(
+            isinstance(pair, list | tuple) and len(pair) == 2 and all(isinstance(part, str) for part in pair)
+            for pair in self.data[key]
+        ):
+            raise self.error(key, "a list of pairs of texts")
+        return tuple((str(first), str(second)) for first, second in self.data[key])
+
+    def mapping(self, key: str) -> dict[str, Any]:
+        value = self.data.get(key)
+        if not isinstance(value, dict) or len(value) > _MAX_ENTRIES or not all(isinstance(k, str) for k in value):
+            raise self.error(key, "a mapping")
+        return value
+
+    def counts(self, key: str) -> dict[str, int]:
+        value = self.mapping(key)
+        if not all(type(item) is int and 0 <= item < _MAX_INT for item in value.values()):
+            raise self.error(key, "whole numbers by node")
+        return value
+
+    def values(self, key: str) -> dict[str, Value]:
+        value = self.mapping(key)
+        for item in value.values():
+            if not isinstance(item, bool | int | float | str) or (
+                isinstance(item, int | float) and not isinstance(item, bool) and not abs(item) <= 1e9
+            ):
+                raise self.error(key, "numbers, texts, true or false by name")
+        return value

@@ -1,0 +1,88 @@
+"""Words in two languages: wrapping to the subtitle box, and names in braces that are filled in when spoken."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from game.core.errors import BadInput
+
+__all__ = ["LANGUAGES", "ROWS_PER_BOX", "ROW_CHARS", "Text", "fill", "slots", "wrap"]
+
+LANGUAGES: tuple[str, ...] = ("en", "ja")
+ROW_CHARS = {"en": 38, "ja": 22}
+ROWS_PER_BOX = 3
+
+_SLOT = re.compile(r"\{([^{}]*)\}")
+_NAME = re.compile(r"[a-z_][a-z0-9_]*")
+# Kinsoku: what may not begin a row, and what may not end one (JIS X 4051, the common subset).
+_NOT_FIRST = frozenset("、。，．・：；？！ー…」』）】〉》々ぁぃぅぇぉっゃゅょァィゥェォッャュョ,.!?)]")
+_NOT_LAST = frozenset("「『（【〈《([")
+
+
+@dataclass(frozen=True)
+class Text:
+    """The same words in both languages; an empty string where a translation is missing."""
+
+    en: str
+    ja: str
+
+    def get(self, language: str) -> str:
+        """The words in ``en`` or ``ja``; English where the other is missing. Raises BadInput for another language."""
+        if language not in LANGUAGES:
+            raise BadInput("language", expected=" | ".join(LANGUAGES), seen=language)
+        return (self.ja if language == "ja" else self.en) or self.en
+
+
+def slots(text: str) -> list[tuple[str, int]]:
+    """What stands in braces, with its place in the text; a lone brace is given as '{' or '}'."""
+    found = [(match.group(1), match.start()) for match in _SLOT.finditer(text)]
+    rest = _SLOT.sub(lambda match: "\0" * len(match.group()), text)
+    found += [(char, index) for index, char in enumerate(rest) if char in "{}"]
+    return sorted(found, key=lambda item: item[1])
+
+
+def fill(text: str, value_of: Callable[[str], str | None]) -> str:
+    """Replace ``{name}`` by its value; what has none stays as it stands. No format language, nothing nested."""
+
+    def one(match: re.Match[str]) -> str:
+        value = value_of(match.group(1)) if _NAME.fullmatch(match.group(1)) else None
+        return match.group() if value is None else value
+
+    return _SLOT.sub(one, text)
+
+
+def wrap(text: str, language: str) -> tuple[str, ...]:
+    """Rows as the subtitle box shows them: 38 characters of English by words, 22 of Japanese by kinsoku."""
+    width = ROW_CHARS[language]
+    rows: list[str] = []
+    for paragraph in text.strip().split("\n"):
+        rows.extend(_wrap_ja(paragraph.strip(), width) if language == "ja" else _wrap_words(paragraph, width))
+    return tuple(rows)
+
+
+def _wrap_words(text: str, width: int) -> list[str]:
+    rows = [""]
+    for word in text.split():
+        if rows[-1] and len(rows[-1]) + 1 + len(word) > width:
+            rows.append(word)
+        else:
+            rows[-1] = f"{rows[-1]} {word}" if rows[-1] else word
+    return rows
+
+
+def _wrap_ja(text: str, width: int) -> list[str]:
+    rows: list[str] = []
+    while len(text) > width:
+        cut = width
+        while cut > width - 4 and (text[cut] in _NOT_FIRST or text[cut - 1] in _NOT_LAST or _inside_word(text, cut)):
+            cut -= 1
+        rows.append(text[:cut].rstrip())
+        text = text[cut:].lstrip()
+    return [*rows, text]
+
+
+def _inside_word(text: str, cut: int) -> bool:
+    """Numbers and Latin words stay whole."""
+    return text[cut - 1].isascii() and text[cut - 1].isalnum() and text[cut].isascii() and text[cut].isalnum()
