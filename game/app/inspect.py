@@ -70,7 +70,6 @@ def run(args: argparse.Namespace) -> int:
         if frame >= count:
             raise BadInput("--frames", where=Where(args.file), expected=f"frames from 0 to {count - 1}", seen=frame)
     positions, _ = contents.clip.to_model(np.array(frames, dtype=np.intp))
-    positions = np.asarray(positions, dtype=np.float64)
     if args.json:
         print(json.dumps(_as_json(contents, frames, positions), ensure_ascii=False))
     else:
@@ -129,7 +128,7 @@ def _open_gltf(path: Path, animation: int, fps: float) -> _Contents:
         clip = animation_clip(file, animation, fps, rig)
     else:
         raise BadInput("--animation", expected=f"0 to {len(file.animations) - 1}", seen=animation)
-    kind = f"VRM {vrm.version}" if vrm else "glTF"
+    kind = f"VRM {vrm.version}" if vrm else "VRMA 1.0" if "VRMC_vrm_animation" in file.extensions else "glTF"
     return _Contents(path, kind, clip, bool(file.animations), facts, vrm.findings if vrm else file.findings)
 
 
@@ -155,7 +154,7 @@ def _character_facts(file: GltfFile, vrm: Vrm) -> dict[str, Any]:
     }
 
 
-def _as_json(contents: _Contents, frames: list[int], positions: NDArray[np.float64]) -> dict[str, Any]:
+def _as_json(contents: _Contents, frames: list[int], positions: NDArray[np.floating[Any]]) -> dict[str, Any]:
     clip = contents.clip
     return {
         "file": str(contents.path),
@@ -170,7 +169,7 @@ def _as_json(contents: _Contents, frames: list[int], positions: NDArray[np.float
     }
 
 
-def _print_table(contents: _Contents, frames: list[int], positions: NDArray[np.float64]) -> None:
+def _print_table(contents: _Contents, frames: list[int], positions: NDArray[np.floating[Any]]) -> None:
     clip = contents.clip
     print(f"{_plain(str(contents.path))}: {contents.kind}, {len(clip.skeleton)} joints")
     if contents.animated:

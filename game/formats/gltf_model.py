@@ -192,11 +192,14 @@ class GltfFile:
 
 
 def topological(parents: Sequence[int]) -> list[int]:
-    """Indices with every parent before its children; shorter than the input where parents form a cycle."""
+    """Indices depth first, every parent before its children; shorter than the input where parents form a cycle."""
     children: list[list[int]] = [[] for _ in parents]
-    order: list[int] = []
+    stack: list[int] = []
     for index, parent in enumerate(parents):
-        (children[parent] if parent >= 0 else order).append(index)
-    for index in order:  # grows while it is walked
-        order.extend(children[index])
+        (children[parent] if parent >= 0 else stack).append(index)
+    stack.reverse()
+    order: list[int] = []
+    while stack:
+        order.append(stack.pop())
+        stack.extend(reversed(children[order[-1]]))
     return order
