@@ -3,146 +3,157 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from game.face.mesh import Sheet, bezier, discs, rgb, ribbons, tint
+from game.face.mesh import Sheet, bezier, ink, polar, ribbons
 from game.face.params import INDEX, FaceParams
 from game.face.style import FaceStyle
 
 __all__ = ["complexion", "drops", "signs"]
 
 Floats = NDArray[np.float64]
-_RINGS = np.linspace(0.0, 1.0, 7)
-_SOFT = (1.0 - _RINGS**2) ** 1.5
-_SIDE = (1.0, -1.0)
+Oval = tuple[float, float, float, float]  # x, y, rx, ry in mm
+_RINGS = (0.0, 0.17, 0.34, 0.5, 0.67, 0.84, 1.0)
+_DISC = polar(_RINGS, 24)
+_SOFT = (1.0 - np.array(_RINGS) ** 2)[None, :, None, None] ** 1.5
+_VEIL_X = np.array([-168.0, 0.0, 168.0])
+_CHEEKS = (1.0, -1.0)
+_UNIT8 = np.linspace(0.0, 1.0, 8)
+_UNIT12 = np.linspace(0.0, 1.0, 12)
+
+_BLUSH_STROKE = bezier(((5.0, -9.0), (2.0, -3.0), (-1.0, 3.0), (-4.0, 8.0)), 10)
+_BLUSH_LINES = np.array([[(90.0 * s + i * 13.0, -80.0)] for s in _CHEEKS for i in (-1, 0, 1)]) + _BLUSH_STROKE
+_BLUSH_WIDTH = 1.2 + 2.8 * np.sin(np.linspace(0.0, np.pi, 10))
+_DREAD_X = np.linspace(-84.0, 84.0, 11)[:, None]
+_DREAD = np.array([[45.0, 69.0, 51.0, 84.0, 60.0, 90.0, 54.0, 81.0, 63.0, 75.0, 42.0]]).T * _UNIT8
+_BAGS_X = np.array([[s * (40.0 + 14.0 * i)] for s in _CHEEKS for i in range(4)])
+_BAGS = np.array([[15.0, 22.0, 18.0, 12.0] * 2]).T * _UNIT8
+
+_DROP_ANGLE = np.linspace(0.0, np.pi, 15)
+_DROP_HALF = 0.86 * np.sin(_DROP_ANGLE) * np.sin(_DROP_ANGLE / 2.0) ** 1.6
+_DROP_Y = 1.5 * (1.0 + np.cos(_DROP_ANGLE))
+_SPOT = polar((0.0, 0.9, 1.15), 12)
+_SPOT_EDGE = np.array([1.0, 1.0, 0.0])[None, :, None, None]
+
+_VEIN_TURN = np.radians(12.0 + 90.0 * np.arange(4))
+_VEIN_SPIN = np.array([[(np.cos(a), np.sin(a)), (-np.sin(a), np.cos(a))] for a in _VEIN_TURN])
+_VEIN_ARMS = bezier(((4.0, 18.0), (4.2, 8.4), (8.6, 4.2), (18.0, 4.0)), 14) @ _VEIN_SPIN
+_VEIN_WIDTH = 0.55 + 0.45 * np.sin(np.linspace(0.0, np.pi, 14))
 
 
-def _ovals(sheet: Sheet, shapes: list[tuple[float, float, float, float]], colour: str, alpha: float) -> None:
-    """Soft-edged ellipses (x, y, rx, ry)."""
+def _ovals(sheet: Sheet, shapes: tuple[Oval, ...], code: str, alpha: float) -> None:
+    """Soft-edged ellipses."""
     if alpha <= 1e-3:
         return
-    array = np.array(shapes)
-    position = discs(array[:, :2], array[:, 2:], _RINGS, 28)
-    amount = np.broadcast_to(_SOFT[None, :, None] * min(alpha, 1.0), position.shape[:-1])
-    sheet.grid(position, tint(rgb(colour), amount))
+    array = np.array(shapes)[:, None, None]
+    position = array[..., :2] + _DISC * array[..., 2:]
+    colour = np.empty((*position.shape[:3], 4))
+    colour[...] = ink(code) * (_SOFT * min(alpha, 1.0))
+    sheet.grid(position, colour)
 
 
-def _veil(sheet: Sheet, heights: ArrayLike, alphas: ArrayLike, colour: str) -> None:
-    """Horizontal gradient bands over the whole width."""
-    y = np.asarray(heights, dtype=np.float64)
-    x = np.linspace(-168.0, 168.0, 3)
-    position = np.stack(np.broadcast_arrays(x[None, :], y[:, None]), axis=-1)
-    amount = np.broadcast_to(np.asarray(alphas, dtype=np.float64)[:, None], position.shape[:-1])
-    sheet.grid(position, tint(rgb(colour), amount))
+def _veil(sheet: Sheet, amount: float, code: str, *steps: tuple[float, float]) -> None:
+    """A vertical gradient over the whole width; steps are (height, alpha) from the top."""
+    if amount <= 1e-3:
+        return
+    position = np.empty((1, len(steps), 3, 2))
+    colour = np.empty((1, len(steps), 3, 4))
+    position[..., 0] = _VEIL_X
+    for i, (y, alpha) in enumerate(steps):
+        position[0, i, :, 1] = y
+        colour[0, i] = ink(code) * (alpha * amount)
+    sheet.grid(position, colour)
+
+
+def _cheeks(x: float, y: float, rx: float, ry: float) -> tuple[Oval, Oval]:
+    return (x, y, rx, ry), (-x, y, rx, ry)
 
 
 def complexion(sheet: Sheet, params: FaceParams) -> None:
     """Everything that tints the skin, below all drawn features."""
-    pale, gloom, sick, red = (float(params[INDEX[n]]) for n in ("pale", "gloom", "sick", "red"))
-    if pale > 1e-3:
-        _veil(sheet, [138.0, 40.0, -60.0, -190.0], np.array([0.5, 0.5, 0.42, 0.3]) * pale, "#E9ECF6")
-        _veil(sheet, [138.0, 60.0, -30.0, -110.0], np.array([0.5, 0.38, 0.12, 0.0]) * pale, "#7C88BE")
-    if sick > 1e-3:
-        _veil(sheet, [138.0, 20.0, -60.0, -190.0], np.array([0.34, 0.30, 0.26, 0.34]) * sick, "#9DB78A")
-        _ovals(sheet, [(0.0, -112.0, 105.0, 62.0)], "#7FA070", 0.42 * sick)
-        _ovals(sheet, [(84.0, -78.0, 44.0, 26.0), (-84.0, -78.0, 44.0, 26.0)], "#86A06A", 0.40 * sick)
-    if gloom > 1e-3:
-        _veil(sheet, [138.0, 70.0, 10.0, -50.0, -100.0], np.array([0.88, 0.80, 0.55, 0.22, 0.0]) * gloom, "#56639F")
-    if red > 1e-3:
-        _ovals(sheet, [(0.0, -60.0, 165.0, 92.0)], "#F0412E", 0.46 * red)
-        _ovals(sheet, [(84.0 * s, -74.0, 60.0, 42.0) for s in _SIDE], "#E8321F", 0.52 * red)
-        _veil(sheet, [138.0, 70.0, 10.0, -40.0], np.array([0.55, 0.42, 0.18, 0.0]) * red, "#E84A38")
-    blush = float(params[INDEX["blush"]])
-    _ovals(sheet, [(90.0 * s, -80.0, 43.0, 27.0) for s in _SIDE], "#FF6257", 0.66 * min(blush, 1.0))
-    if blush > 1.0:  # a deep blush crosses the nose
-        _ovals(sheet, [(0.0, -74.0, 120.0, 30.0)], "#FF6257", 0.75 * (blush - 1.0))
-    _strokes(sheet, params)
+    pale, gloom, sick, red, blush = (float(params[INDEX[n]]) for n in ("pale", "gloom", "sick", "red", "blush"))
+    _veil(sheet, pale, "#E9ECF6", (138.0, 0.5), (40.0, 0.5), (-60.0, 0.42), (-190.0, 0.3))
+    _veil(sheet, pale, "#7C88BE", (138.0, 0.5), (60.0, 0.38), (-30.0, 0.12), (-110.0, 0.0))
+    _veil(sheet, sick, "#A9BD8C", (138.0, 0.34), (20.0, 0.28), (-60.0, 0.24), (-190.0, 0.32))
+    _ovals(sheet, ((0.0, -112.0, 105.0, 62.0),), "#7FA070", 0.44 * sick)
+    _ovals(sheet, _cheeks(84.0, -78.0, 46.0, 28.0), "#7D9C64", 0.5 * sick)
+    _veil(sheet, gloom, "#56639F", (138.0, 0.88), (70.0, 0.80), (10.0, 0.55), (-50.0, 0.22), (-100.0, 0.0))
+    _ovals(sheet, ((0.0, -60.0, 165.0, 92.0),), "#F0412E", 0.46 * red)
+    _ovals(sheet, _cheeks(84.0, -74.0, 60.0, 42.0), "#E8321F", 0.52 * red)
+    _veil(sheet, red, "#E84A38", (138.0, 0.55), (70.0, 0.42), (10.0, 0.18), (-40.0, 0.0))
+    _ovals(sheet, _cheeks(90.0, -80.0, 43.0, 27.0), "#FF6257", 0.66 * min(blush, 1.0))
+    _ovals(sheet, ((0.0, -74.0, 120.0, 30.0),), "#FF6257", 0.75 * (blush - 1.0))  # a deep blush crosses the nose
 
-
-def _strokes(sheet: Sheet, params: FaceParams) -> None:
-    lines = float(params[INDEX["blush_lines"]])
+    lines, dread = float(params[INDEX["blush_lines"]]), float(params[INDEX["gloom_lines"]])
     if lines > 1e-3:
-        stroke = bezier([(-5.0, -9.0), (-2.0, -3.0), (1.0, 3.0), (4.0, 8.0)], 10) * np.array([-1.0, 1.0])
-        at = np.array([(90.0 * s + i * 13.0, -80.0) for s in _SIDE for i in (-1, 0, 1)])
-        width = 1.2 + 2.8 * np.sin(np.linspace(0.0, np.pi, 10))
-        ribbons(sheet, at[:, None] + stroke, width, tint(rgb("#E23F3A"), np.full(6, 0.78 * min(lines, 1.0))))
-    gloom = float(params[INDEX["gloom_lines"]])
-    if gloom > 1e-3:
-        x = np.linspace(-84.0, 84.0, 11)
-        length = np.array([30.0, 46.0, 34.0, 58.0, 40.0, 62.0, 36.0, 54.0, 42.0, 50.0, 28.0]) * (0.35 + 0.65 * gloom)
-        y = np.linspace(0.0, 1.0, 8)
-        high = np.stack(np.broadcast_arrays(x[:, None], 100.0 - length[:, None] * 1.5 * y), axis=-1)
-        ribbons(sheet, high, np.linspace(4.6, 1.0, 8), tint(rgb("#3F4A8C"), np.full(11, 0.62 * gloom)))
-        x = np.array([s * (40.0 + 14.0 * i) for s in _SIDE for i in range(4)])
-        drop = np.array([15.0, 22.0, 18.0, 12.0] * 2) * (0.35 + 0.65 * gloom)
-        low = np.stack(np.broadcast_arrays(x[:, None], -86.0 - drop[:, None] * y), axis=-1)
-        ribbons(sheet, low, np.linspace(3.2, 0.8, 8), tint(rgb("#4E59A0"), np.full(8, 0.62 * gloom)))
+        colour = np.tile(ink("#E23F3A") * (0.78 * lines), (6, 1))
+        ribbons(sheet, _BLUSH_LINES, _BLUSH_WIDTH, colour)
+    if dread > 1e-3:
+        grow = 0.35 + 0.65 * dread
+        colour = ink("#3F4A8C") * (0.62 * dread)
+        high = np.empty((len(_DREAD_X), 8, 2))
+        high[..., 0], high[..., 1] = _DREAD_X, 100.0 - grow * _DREAD
+        ribbons(sheet, high, 4.6 - 3.6 * _UNIT8, np.tile(colour, (len(high), 1)))
+        low = np.empty((len(_BAGS_X), 8, 2))
+        low[..., 0], low[..., 1] = _BAGS_X, -86.0 - grow * _BAGS
+        ribbons(sheet, low, 3.2 - 2.4 * _UNIT8, np.tile(colour, (len(low), 1)))
 
 
-def _drop(x: float, y: float, size: float) -> tuple[Floats, Floats]:
-    """A hanging drop, 2:1: fill grid (2, n, 2) and closed outline (n, 2); its round bottom at y."""
-    angle = np.linspace(0.0, np.pi, 17)
-    # Teardrop curve: half width sin(a)·sin(a/2)^1.6 over height.
-    half = size * 0.86 * np.sin(angle) * np.sin(angle / 2.0) ** 1.6
-    height = y + size * 1.5 * (1.0 + np.cos(angle))
-    right = np.stack([x + half, height], axis=-1)
-    left = np.stack([x - half, height], axis=-1)
-    return np.stack([left, right]), np.concatenate([right, left[::-1]])
-
-
-def _water_drop(sheet: Sheet, x: float, y: float, size: float, alpha: float, fill: str, line: str) -> None:
-    body, outline = _drop(x, y, size)
-    top, bottom = rgb("#F4FDFF"), rgb(fill)
-    level = np.clip((body[..., 1] - y) / (3.0 * size), 0.0, 1.0)[..., None]
-    sheet.grid(body, tint(bottom + (top - bottom) * level, np.full(body.shape[:-1], 0.97 * alpha)))
-    ribbons(sheet, outline[None], 2.6, tint(rgb(line), np.array([0.95 * alpha])))
-    spot = discs([(x - 0.34 * size, y + 0.95 * size)], [(0.2 * size, 0.3 * size)], [0.0, 0.9, 1.1], 14)
-    amount = np.broadcast_to(np.array([1.0, 1.0, 0.0])[None, :, None] * alpha, spot.shape[:-1])
-    sheet.grid(spot, tint(np.ones(3), amount))
+def _water_drop(sheet: Sheet, place: tuple[float, float], size: float, alpha: float, fill: str, over: bool) -> None:
+    """A hanging drop three sizes high, its round bottom at ``place``."""
+    x, y = place
+    half, height = size * _DROP_HALF, y + size * _DROP_Y
+    body = np.empty((1, 2, len(half), 2))
+    body[0, 0, :, 0], body[0, 1, :, 0] = x - half, x + half
+    body[..., 1] = height
+    level = (_DROP_Y / 3.0)[:, None]
+    colour = np.empty((1, 2, len(half), 4))
+    colour[:] = (ink(fill) + (ink("#F4FDFF") - ink(fill)) * level) * (0.97 * alpha)
+    sheet.grid(body, colour, late=True, over=over)
+    outline = np.concatenate([body[0, 1], body[0, 0, ::-1]])[None]
+    ribbons(sheet, outline, 2.6, ink("#4E9CC8")[None] * (0.95 * alpha), late=True, over=over)
+    spot = np.array([x - 0.34 * size, y + 0.95 * size]) + _SPOT[None] * (0.16 * size, 0.26 * size)
+    shine = np.empty((*spot.shape[:3], 4))
+    shine[...] = _SPOT_EDGE * alpha
+    sheet.grid(spot, shine, late=True, over=over)
 
 
 def drops(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
     """Tears, drawn under the hair."""
-    stream = float(params[INDEX["tear_stream"]])
+    stream, tear = float(params[INDEX["tear_stream"]]), float(params[INDEX["tear"]])
     if stream > 1e-3:
-        along = np.linspace(0.0, 1.0, 12)
-        for side in _SIDE:
-            for x0, x1, wide in ((34.0, 40.0, 7.5), (84.0, 92.0, 9.0)):
-                reach = 66.0 * (0.3 + 0.7 * stream)
-                y = style.eye_y - 40.0 - reach * along
-                x = side * (x0 + (x1 - x0) * along**0.7)
-                half = wide * (0.55 + 0.45 * along) * (0.4 + 0.6 * stream)
-                body = np.stack([np.stack([x - half, y], axis=-1), np.stack([x + half, y], axis=-1)])
-                fade = np.interp(along, [0.0, 0.1, 0.75, 1.0], [0.6, 0.86, 0.8, 0.0]) * stream
-                sheet.grid(body, tint(rgb("#C4EEFF"), np.broadcast_to(fade, (2, 12))))
-                edge = tint(rgb("#6BB4D8"), np.full(2, 0.75 * stream))
-                taper = np.linspace(2.4, 0.4, 12)
-                ribbons(sheet, body, taper, edge)
-    tear = float(params[INDEX["tear"]])
+        y = style.eye_y - 40.0 - 66.0 * (0.3 + 0.7 * stream) * _UNIT12
+        fade = np.interp(_UNIT12, (0.0, 0.1, 0.75, 1.0), (0.6, 0.86, 0.8, 0.0)) * stream
+        colour = np.empty((4, 2, 12, 4))
+        colour[:] = ink("#C4EEFF") * fade[:, None]
+        body = np.empty((4, 2, 12, 2))
+        body[..., 1] = y
+        paths = ((34.0, 40.0, 7.5), (84.0, 92.0, 9.0))
+        for i, (start, end, wide) in enumerate(paths):
+            x = start + (end - start) * _UNIT12
+            half = wide * (0.55 + 0.45 * _UNIT12) * (0.4 + 0.6 * stream)
+            for j, side in enumerate(_CHEEKS):
+                body[2 * i + j, 0, :, 0], body[2 * i + j, 1, :, 0] = side * x - half, side * x + half
+        sheet.grid(body, colour, late=True)
+        edge = np.tile(ink("#6BB4D8") * (0.75 * stream), (8, 1))
+        ribbons(sheet, body.reshape(8, 12, 2), 2.4 - 2.0 * _UNIT12, edge, late=True)
     if tear > 1e-3:
-        grow = 0.35 + 0.65 * tear
-        shown = min(tear * 3.0, 1.0)
-        _water_drop(sheet, 90.0, -106.0 + 6.0 * (1.0 - tear), 11.5 * grow, shown, "#9FDDF8", "#4E9FC9")
-        if tear > 0.5:
-            _water_drop(sheet, -90.0, -98.0, 8.5 * (tear - 0.5) * 2.0, (tear - 0.5) * 2.0, "#9FDDF8", "#4E9FC9")
+        place = (90.0, -106.0 + 6.0 * (1.0 - tear))
+        _water_drop(sheet, place, 11.5 * (0.35 + 0.65 * tear), min(tear * 3.0, 1.0), "#9FDDF8", False)
+        second = 2.0 * (tear - 0.5)
+        if second > 1e-3:
+            _water_drop(sheet, (-90.0, -98.0), 8.5 * second, second, "#9FDDF8", False)
 
 
 def signs(sheet: Sheet, params: FaceParams) -> None:
     """Sweat drop and vein: drawn over the hair too, so a fringe never hides them."""
-    vein = float(params[INDEX["vein"]])
+    vein, sweat = float(params[INDEX["vein"]]), float(params[INDEX["sweat"]])
     if vein > 1e-3:
         size = (0.45 + 0.75 * vein) * 1.15
-        hook = np.array([(4.0, 18.0), (4.2, 8.4), (8.6, 4.2), (18.0, 4.0)])
-        curve = bezier(hook, 14) * size
-        turns = np.radians(12.0 + 90.0 * np.arange(4))
-        spin = np.stack(
-            [np.stack([np.cos(turns), np.sin(turns)], -1), np.stack([-np.sin(turns), np.cos(turns)], -1)], axis=1
-        )
-        arms = np.einsum("nk,rkj->rnj", curve, spin) + np.array([-92.0, 60.0])
-        swell = 0.55 + 0.45 * np.sin(np.linspace(0.0, np.pi, 14))
-        ribbons(sheet, arms, 12.0 * size * swell, tint(rgb("#FFF3E0"), np.full(4, min(vein * 2.0, 1.0))))
-        ribbons(sheet, arms, 6.4 * size * swell, tint(rgb("#F0242A"), np.full(4, min(vein * 2.0, 1.0))))
-    sweat = float(params[INDEX["sweat"]])
+        arms = _VEIN_ARMS * size + (-92.0, 60.0)
+        for code, width in (("#FFF3E0", 12.0), ("#F0242A", 6.4)):
+            colour = np.tile(ink(code) * min(vein * 2.0, 1.0), (4, 1))
+            ribbons(sheet, arms, (width * size) * _VEIN_WIDTH, colour, late=True, over=True)
     if sweat > 1e-3:
-        size = 13.5 * (0.45 + 0.55 * sweat)
-        _water_drop(sheet, 104.0, 26.0 - 14.0 * sweat, size, min(sweat * 2.0, 1.0), "#A6E2FA", "#4F9CC8")
+        place = (104.0, 26.0 - 14.0 * sweat)
+        _water_drop(sheet, place, 13.5 * (0.45 + 0.55 * sweat), min(sweat * 2.0, 1.0), "#A6E2FA", True)

@@ -7,16 +7,36 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from game.face.mesh import FEATHER_MM, Sheet, bezier, rgb, ribbons, tint
+from game.face.mesh import FEATHER_MM, Sheet, bezier, ink, ribbons
 from game.face.params import INDEX, FaceParams
 from game.face.style import FaceStyle
 
 __all__ = ["Lips", "lips", "mouth"]
 
 Floats = NDArray[np.float64]
-_COLUMNS = 49
+_COLUMNS = 41
+_MIDDLE = _COLUMNS // 2
 _S = -np.cos(np.linspace(0.0, np.pi, _COLUMNS))  # −1 right corner … 1 left corner, dense at the corners
 _ROUND = np.sqrt(np.maximum(1.0 - _S**2, 0.0))
+_INSIDE = 1.0 - _S**6  # keeps waves off the corners
+_SMILE = 1.35 * _S**2 - 0.35
+_LEAN = 0.7 * _S + 0.3 * _S**2
+_WAVE = 3.6 * np.sin(3.0 * np.pi * _S + 0.6) * _INSIDE
+_WAVE_LOW = 2.6 * np.sin(4.0 * np.pi * _S + 1.1) * _INSIDE
+_CAT = 9.0 * (np.sqrt(np.sin(np.pi * _S) ** 2 + 0.03) - 0.173)
+_PUCKER = 2.2 * np.exp(-((_S / 0.35) ** 2))
+_TENT = 15.0 * (1.05 - np.sqrt(_S**2 + 0.02))
+_CLOSED_WIDTH = 2.4 + 3.0 * np.sqrt(_ROUND)
+_HUMP = np.sqrt(np.clip(1.0 - (_S / 0.82) ** 2, 0.0, 1.0)) * (1.0 - 0.16 * np.exp(-((_S / 0.2) ** 2)))
+_TOOTH_ROW = np.clip(1.0 - (_S / 0.97) ** 8, 0.0, 1.0)
+_GAPS = np.linspace(-0.76, 0.76, 7)  # between the teeth
+_UNIT5 = np.linspace(0.0, 1.0, 5)
+_SWELL = np.sin(np.linspace(0.0, np.pi, 12))
+_HOOK = bezier(((-2.5, 4.0), (1.5, 3.5), (4.0, 0.0), (4.0, -4.0)), 10)
+_HOOKS = np.stack([_HOOK, _HOOK * np.array([-1.0, 1.0])])
+_HOOK_WIDTH = np.linspace(1.6, 2.6, 10)
+_TONGUE_U = np.linspace(-1.0, 1.0, 21)
+_TONGUE_ROUND = np.maximum(1.0 - _TONGUE_U**2, 0.0) ** 0.4
 
 
 @dataclass(frozen=True)
@@ -31,133 +51,114 @@ class Lips:
 
 def lips(params: FaceParams, style: FaceStyle) -> Lips:
     """The lip curves of an expression (K,)."""
-    width, corner, opening, top = (params[INDEX[n]] for n in ("mouth_width", "mouth_corner", "mouth_open", "mouth_top"))
-    square, peak, cat, wave = (params[INDEX[n]] for n in ("mouth_square", "mouth_peak", "mouth_cat", "mouth_wave"))
-    asym, skew, pout = (params[INDEX[n]] for n in ("mouth_asym", "mouth_skew", "mouth_pout"))
-    opening = max(float(opening), 0.0)
+    width, corner, opening, top, square, peak, cat, wave, asym, skew, pout, lift = (
+        float(params[INDEX["mouth_" + name]])
+        for name in (
+            "width", "corner", "open", "top", "square", "peak", "cat", "wave", "asym", "skew", "pout", "y",
+        )
+    )  # fmt: skip
     ajar = opening / (opening + 5.0)
-    inside = 1.0 - _S**6  # keeps waves off the corners
-    line = corner * (1.35 * _S**2 - 0.35) + asym * (0.7 * _S + 0.3 * _S**2)
-    line = line + 3.6 * wave * np.sin(3.0 * np.pi * _S + 0.6) * inside
-    line = line - 8.0 * cat * (np.sqrt(np.sin(np.pi * _S) ** 2 + 0.03) - 0.173)
-    line = line + 2.2 * pout * np.exp(-((_S / 0.35) ** 2))
-    tent = 15.0 * peak * (1.05 - np.sqrt(_S**2 + 0.02))
-    base = line + tent * (1.0 - 0.55 * ajar)
+    line = corner * _SMILE + asym * _LEAN + wave * _WAVE - cat * _CAT + pout * _PUCKER
+    tent = peak * _TENT
     # Round mouths leave the corner steeply, boxy ones at once.
     profile = _ROUND ** (1.0 - 0.72 * square)
-    upper = base + ajar * top * profile
-    fall = opening * profile
-    lower = base - fall - ajar * (tent * 0.45 + 2.6 * wave * np.sin(4.0 * np.pi * _S + 1.1) * inside)
-    x = skew + width * _S
-    y = style.mouth_y + params[INDEX["mouth_y"]]
-    return Lips(x, y + upper, y + np.minimum(lower, upper), ajar)
+    upper = line + tent * (1.0 - 0.55 * ajar) + (ajar * top) * profile
+    lower = line + tent * (1.0 - ajar) - opening * profile - (ajar * wave) * _WAVE_LOW
+    y = style.mouth_y + lift
+    return Lips(skew + width * _S, y + upper, y + np.minimum(lower, upper), ajar)
 
 
 def _strip(x: Floats, *levels: Floats) -> Floats:
     """(levels, n, 2) from curves (n,) over one abscissa."""
-    return np.stack([np.stack([x, level], axis=-1) for level in levels])
+    result = np.empty((len(levels), len(x), 2))
+    result[:, :, 0] = x
+    for i, level in enumerate(levels):
+        result[i, :, 1] = level
+    return result
+
+
+def _shade(*rows: Floats) -> Floats:
+    """One colour (4,) per level -> (1, levels, n, 4)."""
+    result = np.empty((1, len(rows), _COLUMNS, 4))
+    for i, row in enumerate(rows):
+        result[0, i] = row
+    return result
 
 
 def mouth(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -> None:
     """Cavity, tongue, teeth, outline, the lip's shadow and a tongue put out."""
-    x, upper, lower = lip.x, lip.upper, lip.lower
-    gap = upper - lower
+    pair = _strip(lip.x, lip.lower, lip.upper)
     if lip.ajar > 1e-3:
-        deep, light = rgb(style.mouth_deep), rgb(style.mouth_light)
-        colour = np.stack([np.broadcast_to(light, (_COLUMNS, 3)), np.broadcast_to(deep, (_COLUMNS, 3))])
-        sheet.grid(_strip(x, lower, upper), tint(colour, np.ones((2, _COLUMNS))))
-        _inside(sheet, params, lip, style, gap)
-    weight = style.line_weight
-    closed_width = 2.4 + 3.0 * np.sqrt(_ROUND)
-    width = (closed_width + lip.ajar * (3.6 - closed_width)) * weight
-    dark = rgb(style.lip)
-    ribbons(sheet, _strip(x, lower, upper), width, tint(dark, np.ones(2)))
+        sheet.grid(pair[None], _shade(ink(style.mouth_light), ink(style.mouth_deep)))
+        _inside(sheet, params, lip, style)
+    dark = ink(style.lip)
+    width = (_CLOSED_WIDTH + lip.ajar * (3.6 - _CLOSED_WIDTH)) * style.line_weight
+    ribbons(sheet, pair, width, np.stack([dark, dark]))
 
-    centre = float(params[INDEX["mouth_skew"]])
-    pout = float(params[INDEX["mouth_pout"]])
-    low = float(lower[_COLUMNS // 2])
-    reach = min(0.36 * float(params[INDEX["mouth_width"]]), 14.0)
-    under = bezier([(-reach, 1.5), (-reach * 0.4, -1.0), (reach * 0.4, -1.0), (reach, 1.5)], 12)
-    under = under + np.array([centre, low - 10.0 - 1.5 * pout])
-    swell = np.sin(np.linspace(0.0, np.pi, 12))
-    ribbons(
-        sheet,
-        under[None],
-        (1.0 + 1.9 * swell) * (1.0 + 0.5 * pout),
-        tint(rgb(style.lip_soft) * np.array([1.0, 1.0 - 0.2 * pout, 1.0 - 0.2 * pout]), np.array([0.9])),
-    )
-    _corners(sheet, params, lip, style)
+    pout, width_mm = float(params[INDEX["mouth_pout"]]), float(params[INDEX["mouth_width"]])
+    reach = min(0.36 * width_mm, 14.0)
+    bend = -1.0 - 1.5 * pout
+    under = bezier(((-reach, 1.5), (-reach * 0.4, bend), (reach * 0.4, bend), (reach, 1.5)), 12)
+    under += (lip.x[_MIDDLE], lip.lower[_MIDDLE] - 10.0 - 1.5 * pout)
+    tone = ink(style.lip_soft) * (0.9, 0.9 - 0.2 * pout, 0.9 - 0.2 * pout, 0.9)
+    ribbons(sheet, under[None], (1.0 + 1.9 * _SWELL) * (1.0 + 0.5 * pout), tone[None])
+
+    # A small hook at a corner that is pulled up, as a pen would leave it.
+    asym = float(params[INDEX["mouth_asym"]]) / 10.0
+    smile = max(float(params[INDEX["mouth_corner"]]), 0.0) / 24.0
+    pull = np.array([min(max(smile + asym, 0.0), 1.0), min(max(smile - asym, 0.0), 1.0)])
+    ends = pair[1, [-1, 0]]
+    hooks = ends[:, None] + _HOOKS * (0.4 + 0.9 * pull)[:, None, None]
+    ribbons(sheet, hooks, _HOOK_WIDTH * style.line_weight, dark * pull[:, None])
     _tongue_out(sheet, params, lip, style)
 
 
-def _inside(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle, gap: Floats) -> None:
+def _inside(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -> None:
     x, upper, lower = lip.x, lip.upper, lip.lower
+    gap = upper - lower
     opening = float(gap.max())
     here = min(opening / 6.0, 1.0)
-    tongue = float(params[INDEX["tongue"]])
+    tongue, teeth, clench = (float(params[INDEX[name]]) for name in ("tongue", "teeth", "teeth_clench"))
     if tongue > 1e-3:
-        hump = np.clip(1.0 - (_S / 0.82) ** 2, 0.0, 1.0) ** 0.5 * (1.0 - 0.16 * np.exp(-((_S / 0.2) ** 2)))
-        crest = np.minimum(lower + 0.56 * tongue * opening * hump, upper)
+        crest = np.minimum(lower + (0.56 * tongue * opening) * _HUMP, upper)
         rim = np.minimum(crest + FEATHER_MM, upper)
-        alpha = np.stack([np.full(_COLUMNS, tongue), np.full(_COLUMNS, tongue), np.zeros(_COLUMNS)])
-        warm, pink = rgb(style.tongue) * np.array([0.9, 0.78, 0.8]), rgb(style.tongue)
-        colour = np.stack([np.broadcast_to(c, (_COLUMNS, 3)) for c in (warm, pink, pink)])
-        sheet.grid(_strip(x, lower, crest, rim), tint(colour, alpha * here))
-    teeth = float(params[INDEX["teeth"]])
+        pink = ink(style.tongue) * (tongue * here)
+        warm = pink * (0.9, 0.78, 0.8, 1.0)
+        sheet.grid(_strip(x, lower, crest, rim)[None], _shade(warm, pink, 0.0 * pink))
     if teeth > 1e-3:
-        depth = teeth * min(0.30 * opening + 1.5, 10.0) * np.clip(1.0 - (_S / 0.97) ** 8, 0.0, 1.0)
-        edge = np.maximum(upper - depth, lower)
+        edge = np.maximum(upper - (teeth * min(0.30 * opening + 1.5, 10.0)) * _TOOTH_ROW, lower)
         rim = np.maximum(edge - FEATHER_MM, lower)
-        alpha = np.stack([np.zeros(_COLUMNS), np.ones(_COLUMNS), np.ones(_COLUMNS)])
-        sheet.grid(_strip(x, rim, edge, upper), tint(rgb(style.tooth), alpha * min(teeth * 3.0, 1.0) * here))
-    clench = float(params[INDEX["teeth_clench"]])
+        white = ink(style.tooth) * (min(teeth * 3.0, 1.0) * here)
+        sheet.grid(_strip(x, rim, edge, upper)[None], _shade(0.0 * white, white, white))
     if clench > 1e-3:
-        sheet.grid(_strip(x, lower, upper), tint(rgb(style.tooth), np.full((2, _COLUMNS), clench * here)))
-        line = rgb(style.tooth_line)
-        middle = (upper + lower) / 2.0
-        fade = np.clip(gap / 6.0, 0.0, 1.0)
-        ribbons(sheet, _strip(x, middle), 2.0 * fade[None], tint(line, np.array([0.9 * clench * here])))
-        at = np.linspace(-0.76, 0.76, 7)
-        foot, head = np.interp(at, _S, lower), np.interp(at, _S, upper)
-        along = np.linspace(0.0, 1.0, 5)
-        bars = foot[:, None] + (head - foot)[:, None] * along
-        across = np.interp(at, _S, x)[:, None] + np.zeros(5)
-        ribbons(sheet, np.stack([across, bars], axis=-1), 1.5, tint(line, np.full(7, 0.6 * clench * here)))
-
-
-def _corners(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -> None:
-    """A small hook at a corner that is pulled up, as a pen would leave it."""
-    asym = float(params[INDEX["mouth_asym"]])
-    smile = max(float(params[INDEX["mouth_corner"]]), 0.0) / 22.0
-    pull = np.clip(np.array([asym, -asym]) / 10.0 + smile * 0.9, 0.0, 1.0)
-    ends = np.array([[lip.x[-1], lip.upper[-1]], [lip.x[0], lip.upper[0]]])
-    hook = bezier([(-2.5, 4.0), (1.5, 3.5), (4.0, 0.0), (4.0, -4.0)], 10)
-    mirrored = np.stack([hook, hook * np.array([-1.0, 1.0])])
-    size = (0.4 + 0.9 * pull)[:, None, None]
-    taper = np.linspace(1.6, 2.6, 10)
-    ribbons(sheet, ends[:, None] + mirrored * size, taper * style.line_weight, tint(rgb(style.lip), pull))
+        white, line = ink(style.tooth) * (clench * here), ink(style.tooth_line) * (clench * here)
+        sheet.grid(_strip(x, lower, upper)[None], _shade(white, white))
+        middle = _strip(x, (upper + lower) / 2.0)
+        ribbons(sheet, middle, 2.0 * np.minimum(gap / 6.0, 1.0), (0.9 * line)[None])
+        foot, head = np.interp(_GAPS, _S, lower), np.interp(_GAPS, _S, upper)
+        bars = np.empty((len(_GAPS), 5, 2))
+        bars[..., 0] = np.interp(_GAPS, _S, x)[:, None]
+        bars[..., 1] = foot[:, None] + (head - foot)[:, None] * _UNIT5
+        ribbons(sheet, bars, 1.5, np.tile(0.6 * line, (len(_GAPS), 1)))
 
 
 def _tongue_out(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -> None:
+    """A tongue hanging over the lower lip; its root sits inside the opening."""
     out = float(params[INDEX["tongue_out"]])
     if out <= 1e-3:
         return
     shown = min(out * 4.0, 1.0)
-    half = min(0.52 * float(params[INDEX["mouth_width"]]), 17.0)
-    u = np.linspace(-1.0, 1.0, 21)
-    # The root sits inside the opening so that the tongue comes out of the mouth, not out of the chin.
-    at = lip.x[_COLUMNS // 2] + half * u
+    at = lip.x[_MIDDLE] + min(0.52 * float(params[INDEX["mouth_width"]]), 17.0) * _TONGUE_U
     root = np.interp(at, lip.x, 0.35 * lip.upper + 0.65 * lip.lower)
     length = 27.0 * out
-    tip = root.min() - length * np.sqrt(np.maximum(1.0 - u**2, 0.0)) ** 0.8
-    tip = np.minimum(tip, root)
-    pink = rgb(style.tongue)
-    shade = np.stack([np.broadcast_to(pink, (21, 3)), np.broadcast_to(pink * np.array([0.97, 0.86, 0.86]), (21, 3))])
-    sheet.grid(_strip(at, tip, root), tint(shade, np.full((2, 21), shown)))
-    dark = rgb(style.lip)
-    ribbons(sheet, _strip(at, tip), 3.0 * style.line_weight, tint(dark, np.array([shown])))
-    groove_x = np.full(8, lip.x[_COLUMNS // 2])
-    groove_y = np.linspace(float(root[10]) - 0.1 * length, float(tip[10]) + 0.42 * length, 8)
-    ribbons(
-        sheet, np.stack([groove_x, groove_y], -1)[None], np.linspace(2.0, 0.8, 8), tint(dark, np.array([0.6 * shown]))
-    )
+    tip = np.minimum(root.min() - length * _TONGUE_ROUND, root)
+    pink = ink(style.tongue) * shown
+    colour = np.empty((1, 2, len(at), 4))
+    colour[0, 0], colour[0, 1] = pink, pink * (0.97, 0.84, 0.84, 1.0)
+    sheet.grid(_strip(at, tip, root)[None], colour, late=True)
+    dark = ink(style.lip) * shown
+    ribbons(sheet, _strip(at, tip), 3.0 * style.line_weight, dark[None], late=True)
+    groove = np.empty((1, 8, 2))
+    groove[0, :, 0] = lip.x[_MIDDLE]
+    groove[0, :, 1] = np.linspace(float(root[10]) - 0.1 * length, float(tip[10]) + 0.42 * length, 8)
+    ribbons(sheet, groove, np.linspace(2.0, 0.8, 8), 0.6 * dark[None], late=True)

@@ -1,20 +1,26 @@
-"""Triangles of the face drawing: grids, ribbons of varying width, soft ovals; everything is a batch of grids.
+"""Triangles of the face drawing: fills as vertex grids, strokes of varying width with soft edges.
 
-All shapes are laid out as ``(B, m, n)`` vertex grids (B shapes of one kind), so a whole kind is tessellated with a
-handful of array operations. Positions are mm, colours premultiplied sRGB-encoded rgba in 0..1.
+A Sheet collects fills and strokes and tessellates all strokes together in one pass over a flat array, whatever their
+lengths; index arrays depend only on the shapes' sizes and are kept. Positions are mm, colours premultiplied
+sRGB-encoded rgba in 0..1.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["FEATHER_MM", "DrawList", "Layer", "Sheet", "bezier", "discs", "rgb", "ribbons", "tint"]
+__all__ = ["FEATHER_MM", "DrawList", "Layer", "Sheet", "bezier", "ink", "polar", "ribbons"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.uint32]
+Points = NDArray[np.floating[Any]]
+Shapes = tuple[tuple[int, int, int], ...]
+Runs = tuple[tuple[int, int], ...]
 FEATHER_MM = 0.75  # about one pixel of a 512² texture over 340 mm
 
 
@@ -23,11 +29,12 @@ class Layer:
     """One list of triangles: position (n, 2) float32 mm, colour (n, 4) float32 premultiplied, triangle (m, 3) uint32.
 
     Triangles are in painting order (later ones lie on top), of either winding. Blend with ONE, ONE_MINUS_SRC_ALPHA.
+    The triangle array is read-only and the same object for expressions of the same make-up.
     """
 
     position: NDArray[np.float32]
     colour: NDArray[np.float32]
-    triangle: NDArray[np.uint32]
+    triangle: Ints
 
 
 @dataclass(frozen=True)
@@ -38,44 +45,159 @@ class DrawList:
     over: Layer
 
 
-@lru_cache(maxsize=256)
-def _grid_triangles(batch: int, rows: int, columns: int) -> NDArray[np.uint32]:
-    """(batch·(rows−1)·(columns−1)·2, 3) read-only vertex numbers of a batch of grids."""
-    first = np.arange(batch * rows * columns, dtype=np.uint32).reshape(batch, rows, columns)
-    a, b = first[:, :-1, :-1], first[:, :-1, 1:]
-    c, d = first[:, 1:, :-1], first[:, 1:, 1:]
-    quads = np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
-    quads.setflags(write=False)
-    return quads
+@dataclass
+class _Pass:
+    """Fills, then strokes over them; those that also belong over the hair are kept apart and come last."""
+
+    fills: list[tuple[Floats, Floats]] = field(default_factory=list)
+    over_fills: list[tuple[Floats, Floats]] = field(default_factory=list)
+    strokes: list[tuple[Floats, Floats, Floats]] = field(default_factory=list)
+    over_strokes: list[tuple[Floats, Floats, Floats]] = field(default_factory=list)
 
 
 @dataclass
 class Sheet:
-    """Collects grids in painting order and joins them to a Layer."""
+    """Collects shapes in two passes (``late`` ones are painted after all others)."""
 
-    positions: list[Floats] = field(default_factory=list)
-    colours: list[Floats] = field(default_factory=list)
-    triangles: list[NDArray[np.uint32]] = field(default_factory=list)
-    count: int = 0
+    early: _Pass = field(default_factory=_Pass)
+    late: _Pass = field(default_factory=_Pass)
 
-    def grid(self, position: Floats, colour: Floats) -> None:
-        """position (B, m, n, 2) or (m, n, 2); colour the same with 4 premultiplied channels."""
-        if position.ndim == 3:
-            position, colour = position[None], colour[None]
-        batch, rows, columns, _ = position.shape
-        self.positions.append(position.reshape(-1, 2))
-        self.colours.append(colour.reshape(-1, 4))
-        self.triangles.append(_grid_triangles(batch, rows, columns) + np.uint32(self.count))
-        self.count += batch * rows * columns
+    def grid(self, position: Floats, colour: Floats, *, late: bool = False, over: bool = False) -> None:
+        """Fill: position (B, m, n, 2) mm, colour (B, m, n, 4) premultiplied."""
+        target = self.late if late else self.early
+        (target.over_fills if over else target.fills).append((position, colour))
 
     def layer(self) -> Layer:
-        if not self.positions:
-            return Layer(np.zeros((0, 2), np.float32), np.zeros((0, 4), np.float32), np.zeros((0, 3), np.uint32))
-        return Layer(
-            np.concatenate(self.positions).astype(np.float32),
-            np.concatenate(self.colours).astype(np.float32),
-            np.concatenate(self.triangles),
-        )
+        """Everything as one layer."""
+        return self.draw_list().under
+
+    def draw_list(self) -> DrawList:
+        """All shapes under, the ``over`` shapes once more for the hair."""
+        position: list[Points] = []
+        colour: list[Points] = []
+        over_position: list[Points] = []
+        over_colour: list[Points] = []
+        make_up: list[tuple[Shapes, Runs]] = []
+        over_make_up: list[tuple[Shapes, Runs]] = []
+        for part in (self.early, self.late):
+            fills = part.fills + part.over_fills
+            for grid, shades in fills:
+                position.append(grid.reshape(-1, 2))
+                colour.append(shades.reshape(-1, 4))
+            for grid, shades in part.over_fills:
+                over_position.append(grid.reshape(-1, 2))
+                over_colour.append(shades.reshape(-1, 4))
+            strokes = part.strokes + part.over_strokes
+            runs: Runs = tuple((len(s[0]), s[0].shape[1]) for s in strokes)
+            over_runs: Runs = runs[len(part.strokes) :]
+            if strokes:
+                place, shade = _stroke(strokes, runs)
+                position.append(place)
+                colour.append(shade)
+                if over_runs:
+                    first = 4 * sum(b * n for b, n in runs[: len(part.strokes)])
+                    over_position.append(place[first:])
+                    over_colour.append(shade[first:])
+            make_up.append((tuple(f[0].shape[:3] for f in fills), runs))
+            over_make_up.append((tuple(f[0].shape[:3] for f in part.over_fills), over_runs))
+        return DrawList(_join(position, colour, tuple(make_up)), _join(over_position, over_colour, tuple(over_make_up)))
+
+
+def _join(
+    position: list[NDArray[np.float32]], colour: list[NDArray[np.float32]], make_up: tuple[tuple[Shapes, Runs], ...]
+) -> Layer:
+    if not position:
+        return Layer(np.zeros((0, 2), np.float32), np.zeros((0, 4), np.float32), np.zeros((0, 3), np.uint32))
+    return Layer(
+        np.concatenate(position, dtype=np.float32, casting="same_kind"),
+        np.concatenate(colour, dtype=np.float32, casting="same_kind"),
+        _triangles(make_up),
+    )
+
+
+@lru_cache(maxsize=512)
+def _triangles(make_up: tuple[tuple[Shapes, Runs], ...]) -> Ints:
+    """Read-only vertex numbers (m, 3) of passes of grids and strokes laid out one after the other."""
+    pieces: list[Ints] = []
+    start = 0
+    for shapes, runs in make_up:
+        # A stroke of n points is a grid of n × 4 vertices.
+        for batch, rows, columns in (*shapes, *((b, n, 4) for b, n in runs)):
+            first = start + np.arange(batch * rows * columns, dtype=np.uint32).reshape(batch, rows, columns)
+            a, b, c, d = first[:, :-1, :-1], first[:, :-1, 1:], first[:, 1:, :-1], first[:, 1:, 1:]
+            pieces.append(np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3).astype(np.uint32))
+            start += batch * rows * columns
+    result = np.concatenate(pieces) if pieces else np.zeros((0, 3), np.uint32)
+    result.setflags(write=False)
+    return result
+
+
+@lru_cache(maxsize=512)
+def _neighbours(runs: Runs) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """For the points of strokes laid end to end: the point before, the point after, the stroke's number."""
+    size = np.concatenate([np.full(b, n) for b, n in runs])
+    number = np.repeat(np.arange(len(size)), size)
+    first = np.concatenate([[0], np.cumsum(size)[:-1]])[number]
+    last = first + size[number] - 1
+    here = np.arange(int(size.sum()))
+    result = (np.maximum(here - 1, first), np.minimum(here + 1, last), number)
+    for array in result:
+        array.setflags(write=False)
+    return result
+
+
+def _stroke(
+    strokes: list[tuple[Floats, Floats, Floats]], runs: Runs
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Tessellate strokes: vertices (4·points, 2) and colours (4·points, 4); across: clear, solid, solid, clear.
+
+    Where a stroke is thinner than the feather it fades instead of vanishing, so hairlines do not flicker.
+    """
+    before, after, number = _neighbours(runs)
+    point = np.concatenate([s[0].reshape(-1, 2) for s in strokes])
+    width = np.concatenate([s[1].reshape(-1) for s in strokes])
+    colour = np.concatenate([s[2] for s in strokes])[number]
+    step = point[after] - point[before]
+    length = np.sqrt(step[:, 0] * step[:, 0] + step[:, 1] * step[:, 1])
+    length += 1e-9
+    normal = np.empty_like(step)
+    normal[:, 0] = -step[:, 1]
+    normal[:, 1] = step[:, 0]
+    normal /= length[:, None]
+    inner = np.maximum(width - FEATHER_MM, 0.0)
+    inner *= 0.5
+    fade = np.minimum(width * (1.0 / FEATHER_MM), 1.0)
+    near = normal * inner[:, None]
+    far = normal * (inner + FEATHER_MM * np.minimum(fade + 0.25, 1.0))[:, None]
+    position = np.empty((len(point), 4, 2), np.float32)
+    position[:, 0] = point - far
+    position[:, 1] = point - near
+    position[:, 2] = point + near
+    position[:, 3] = point + far
+    shade = np.zeros((len(point), 4, 4), np.float32)
+    colour *= fade[:, None]
+    shade[:, 1] = colour
+    shade[:, 2] = colour
+    return position.reshape(-1, 2), shade.reshape(-1, 4)
+
+
+def ribbons(
+    sheet: Sheet, centre: Floats, width: ArrayLike, colour: Floats, *, late: bool = False, over: bool = False
+) -> None:
+    """Strokes: centre (B, n, 2) mm; width broadcastable to (B, n) mm; colour (B, 4) premultiplied.
+
+    Strokes with alpha 0 are left out.
+    """
+    alpha = colour[:, 3].tolist()
+    if max(alpha) <= 1e-3:
+        return
+    size = np.empty(centre.shape[:2])
+    size[...] = width
+    if min(alpha) <= 1e-3:
+        seen = colour[:, 3] > 1e-3
+        centre, size, colour = centre[seen], size[seen], colour[seen]
+    target = sheet.late if late else sheet.early
+    (target.over_strokes if over else target.strokes).append((centre, size, colour))
 
 
 @lru_cache(maxsize=64)
@@ -92,57 +214,18 @@ def bezier(control: ArrayLike, samples: int = 24) -> Floats:
     return np.asarray(_bernstein(samples) @ np.asarray(control, dtype=np.float64))
 
 
-def rgb(code: str) -> Floats:
-    """``#RRGGBB`` -> (3,) in 0..1, sRGB-encoded."""
-    return np.array([int(code[i : i + 2], 16) / 255.0 for i in (1, 3, 5)])
-
-
-def tint(colour: ArrayLike, alpha: ArrayLike) -> Floats:
-    """Premultiply: colour (..., 3) and alpha (...) -> (..., 4)."""
-    a = np.clip(np.asarray(alpha, dtype=np.float64), 0.0, 1.0)[..., None]
-    c = np.asarray(colour, dtype=np.float64)
-    shape = np.broadcast_shapes(c.shape[:-1], a.shape[:-1])
-    return np.concatenate([np.broadcast_to(c * a, (*shape, 3)), np.broadcast_to(a, (*shape, 1))], axis=-1)
-
-
-def ribbons(sheet: Sheet, centre: Floats, width: ArrayLike, colour: Floats, feather: float = FEATHER_MM) -> None:
-    """Strokes of varying width with soft edges.
-
-    centre (B, n, 2) mm; width broadcastable to (B, n) mm; colour (B, 4) premultiplied. Where a stroke is thinner than
-    the feather it fades instead of vanishing, so hairlines do not flicker. Strokes with alpha 0 are left out.
-    """
-    seen = colour[:, 3] > 1e-3
-    if not seen.any():
-        return
-    w = np.broadcast_to(np.asarray(width, dtype=np.float64), centre.shape[:2])
-    if not seen.all():
-        centre, w, colour = centre[seen], w[seen], colour[seen]
-    step = np.empty_like(centre)
-    step[:, 1:-1] = centre[:, 2:] - centre[:, :-2]
-    step[:, 0] = centre[:, 1] - centre[:, 0]
-    step[:, -1] = centre[:, -1] - centre[:, -2]
-    length = np.maximum(np.hypot(step[..., 0], step[..., 1]), 1e-9)
-    normal = np.stack([-step[..., 1] / length, step[..., 0] / length], axis=-1)
-    inner = np.maximum(w - feather, 0.0) / 2.0
-    outer = inner + feather * np.minimum(w / feather + 0.25, 1.0)
-    across = np.stack([-outer, -inner, inner, outer], axis=1)  # (B, 4, n)
-    position = centre[:, None] + normal[:, None] * across[..., None]
-    fade = np.minimum(w / feather, 1.0)
-    solid = colour[:, None, :] * fade[..., None]
-    clear = np.zeros_like(solid)
-    sheet.grid(position, np.stack([clear, solid, solid, clear], axis=1))
+@lru_cache(maxsize=128)
+def ink(code: str) -> Floats:
+    """``#RRGGBB`` -> opaque (4,) sRGB-encoded; times an alpha it is premultiplied. Read-only."""
+    colour = np.array([int(code[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] + [1.0])
+    colour.setflags(write=False)
+    return colour
 
 
 @lru_cache(maxsize=32)
-def _circle(sectors: int) -> Floats:
+def polar(rings: tuple[float, ...], sectors: int) -> Floats:
+    """Unit polar grid (len(rings), sectors + 1, 2), read-only; the last column repeats the first."""
     angle = np.linspace(0.0, 2.0 * np.pi, sectors + 1)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    circle.setflags(write=False)
-    return circle
-
-
-def discs(centre: ArrayLike, radius: ArrayLike, rings: ArrayLike, sectors: int = 28) -> Floats:
-    """Polar grids of ellipses: centre (B, 2), radius (B, 2), rings (m,) relative radii -> (B, m, sectors + 1, 2)."""
-    c = np.asarray(centre, dtype=np.float64)[:, None, None, :]
-    r = np.asarray(radius, dtype=np.float64)[:, None, None, :]
-    return np.asarray(c + r * np.asarray(rings, dtype=np.float64)[None, :, None, None] * _circle(sectors)[None, None])
+    grid = np.array(rings)[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    grid.setflags(write=False)
+    return np.asarray(grid)

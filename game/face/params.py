@@ -96,6 +96,9 @@ def field_bounds() -> tuple[FaceParams, FaceParams]:
     return np.array([f.low for f in FIELDS]), np.array([f.high for f in FIELDS])
 
 
+_LOW, _HIGH = field_bounds()
+
+
 def region_mask(region: str) -> NDArray[np.bool_]:
     """(K,) bool: which numbers belong to the region."""
     return np.array([f.region == region for f in FIELDS])
@@ -122,5 +125,4 @@ def face_params(**values: float) -> FaceParams:
 
 def clamp(params: FaceParams) -> FaceParams:
     """Params (..., K) forced into the allowed ranges."""
-    low, high = field_bounds()
-    return np.clip(params, low, high)
+    return np.asarray(np.minimum(np.maximum(params, _LOW), _HIGH))
