@@ -20,7 +20,6 @@ LARGEST = 1e9
 """Offsets, positions and angles beyond this are taken for damage."""
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
-_LINE_END = re.compile(rb"\r\n|\r|\n")
 _LINE = re.compile(rb"[^\r\n]+")
 _WORD = re.compile(r"[{}]|[^\s{}]+")
 _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
@@ -55,12 +54,13 @@ class BvhText:
 
     def where(self, offset: int) -> Where:
         """Line and column (both from 1, columns in bytes) of a byte offset."""
-        line, start = 1, 0
-        for end in _LINE_END.finditer(self.data, 0, offset):
-            if end.end() > offset:
-                break
-            line, start = line + 1, end.end()
-        return Where(self.path, line, offset - start + 1)
+        start = max(self.data.rfind(b"\n", 0, offset), self.data.rfind(b"\r", 0, offset)) + 1
+        return Where(self.path, self.line_ends(0, offset) + 1, offset - start + 1)
+
+    def line_ends(self, start: int, end: int) -> int:
+        """How many lines end between two byte offsets, whatever ends them: CR LF, LF or CR."""
+        count = self.data.count
+        return count(b"\n", start, end) + count(b"\r", start, end) - count(b"\r\n", start, end)
 
     def lines(self, offset: int) -> Iterator[tuple[int, bytes]]:
         """(byte offset, content) of the lines from offset that are not empty; nothing is copied ahead."""
@@ -201,10 +201,11 @@ class _Reader:
         if len(named) < count:
             raise BadInput(where=word.where, expected=f"{count} channel names", seen=len(named))
         joint.channels = tuple(self._channel(token) for token in named)
-        for previous, token, channel in zip(("", *joint.channels), named, joint.channels, strict=False):
-            repeated = joint.channels.count(channel) > 1 and channel.endswith("position")
-            if repeated or previous == channel:
-                raise BadInput(f"joint {joint.name!r}: channel {channel} given twice", where=token.where)
+        for index, channel in enumerate(joint.channels):
+            # An axis may be turned about twice (Z X Z), but not twice in a row.
+            before = joint.channels[:index] if channel.endswith("position") else joint.channels[:index][-1:]
+            if channel in before:
+                raise BadInput(f"joint {joint.name!r}: channel {channel} given twice", where=named[index].where)
         return at + 2 + count
 
     @staticmethod
@@ -222,7 +223,9 @@ def read_hierarchy(text: BvhText, *, max_joints: int, max_depth: int) -> tuple[l
     """
     reader = _Reader(text, max_joints, max_depth)
     started = False
+    line_number, counted = 1, 0
     for offset, line in text.lines(0):
+        line_number, counted = line_number + text.line_ends(counted, offset), offset
         stripped = line.strip()
         if stripped.upper() == b"MOTION":
             text.require_printable(offset)
@@ -234,10 +237,8 @@ def read_hierarchy(text: BvhText, *, max_joints: int, max_depth: int) -> tuple[l
         if not started:
             text.require_printable(offset + len(line))
             decoded = decoded.removeprefix("\ufeff")
-        place = text.where(offset)
         words = [
-            Token(match.group(), Where(place.path, place.line, (place.col or 1) + match.start()))
-            for match in _WORD.finditer(decoded)
+            Token(match.group(), Where(text.path, line_number, match.start() + 1)) for match in _WORD.finditer(decoded)
         ]
         if not started and words:
             if words[0].text.upper() != "HIERARCHY":
