@@ -1,0 +1,38 @@
+"""Kinds of command line arguments that several commands share."""
+
+from __future__ import annotations
+
+import argparse
+import re
+
+from game.core.emotion_space import parse_emotion
+from game.core.errors import BadInput
+
+__all__ = ["add_emotion", "parse_size"]
+
+MAX_SIDE = 8192
+
+
+def parse_size(text: str) -> tuple[int, int]:
+    """``1280x720`` -> (1280, 720)."""
+    match = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", text.strip())
+    if match is None:
+        raise argparse.ArgumentTypeError(f"expected WIDTHxHEIGHT such as 1280x720 but saw {text!r}")
+    width, height = int(match[1]), int(match[2])
+    if not (64 <= width <= MAX_SIDE and 64 <= height <= MAX_SIDE):
+        raise argparse.ArgumentTypeError(f"expected sides from 64 to {MAX_SIDE} but saw {text!r}")
+    return width, height
+
+
+def _emotion(text: str) -> object:
+    try:
+        return parse_emotion(text)
+    except BadInput as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def add_emotion(parser: argparse.ArgumentParser) -> None:
+    """``--emotion joy=0.8,fear=0.1``."""
+    parser.add_argument(
+        "--emotion", type=_emotion, default="neutral=1", metavar="NAME=X,…", help="what is felt (default neutral)"
+    )

@@ -1,0 +1,71 @@
+"""Draw a strip of pictures, or a sequence, without a display.
+
+examples:
+  run_game.py film --emotion anger=0.9 --seconds 10 --every 0.5 --strip --out strip.png
+  run_game.py film --emotion joy=0.8 --say "This one here? Oh, it is big!" --seconds 6 --every 0.0333 --out frames
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.app.arguments import parse_size
+from game.app.studio import Studio, add_studio_arguments, write_png
+from game.core.errors import BadInput
+
+__all__ = ["add_arguments", "run", "sheet"]
+
+MAX_PICTURES = 20_000
+MAX_CELLS = 200
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``film``."""
+    add_studio_arguments(parser)
+    parser.add_argument("--seconds", type=float, default=8.0, help="length (default 8)")
+    parser.add_argument("--every", type=float, default=0.5, help="seconds between pictures (default 0.5)")
+    parser.add_argument("--strip", action="store_true", help="one PNG with all pictures side by side")
+    parser.add_argument("--columns", type=int, default=4, help="pictures in a row of the strip (default 4)")
+    parser.add_argument("--size", type=parse_size, default=None, metavar="WxH", help="of one picture")
+    parser.add_argument("--out", type=Path, required=True, help="a PNG (strip) or a folder (sequence)")
+
+
+def sheet(pictures: list[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
+    """Pictures of one size in rows of ``columns``; empty places stay dark."""
+    height, width = pictures[0].shape[:2]
+    rows = math.ceil(len(pictures) / columns)
+    out = np.full((rows * height, columns * width, 3), 24, np.uint8)
+    for i, picture in enumerate(pictures):
+        y, x = (i // columns) * height, (i % columns) * width
+        out[y : y + height, x : x + width] = picture
+    return out
+
+
+def run(args: argparse.Namespace) -> int:
+    """Simulate and draw."""
+    if not 0.0 < args.seconds <= 3600.0:
+        raise BadInput("--seconds", expected="above 0, at most 3600", seen=args.seconds)
+    if not 1 / 120 <= args.every <= args.seconds:
+        raise BadInput("--every", expected="1/120 s to the length", seen=args.every)
+    count = round(args.seconds / args.every)
+    limit = MAX_CELLS if args.strip else MAX_PICTURES
+    if count > limit or not 1 <= args.columns <= 20:
+        raise BadInput("film", expected=f"at most {limit} pictures in 1 to 20 columns", seen=f"{count}, {args.columns}")
+    if not args.strip and ((args.out.exists() and not args.out.is_dir()) or args.out.suffix):
+        raise BadInput("--out", expected="a folder for the sequence (or --strip for one PNG)", seen=str(args.out))
+    studio = Studio(args, args.size or ((400, 440) if args.strip else (1280, 720)), "body" if args.strip else "hero")
+    try:
+        if args.strip:
+            write_png(args.out, sheet(list(studio.pictures(args.seconds, args.every)), args.columns))
+            return 0
+        args.out.mkdir(parents=True, exist_ok=True)
+        for i, picture in enumerate(studio.pictures(args.seconds, args.every, labels=False)):
+            write_png(args.out / f"{i:05d}.png", picture)
+    finally:
+        studio.close()
+    return 0

@@ -1,0 +1,64 @@
+"""What the player does, as plain actions: the only place that knows pygame's events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pygame
+
+__all__ = ["Action", "action_of"]
+
+
+@dataclass(frozen=True)
+class Action:
+    """kind: up down left right confirm back pointer click wheel key resize quit focus_lost.
+
+    at: device pixels for pointer, click, wheel. key: a character or function key's name. amount: wheel notches.
+    fast: whether shift is held (larger steps).
+    """
+
+    kind: str
+    at: tuple[float, float] | None = None
+    key: str = ""
+    amount: int = 0
+    fast: bool = False
+
+
+_KEYS = {
+    pygame.K_UP: "up",
+    pygame.K_DOWN: "down",
+    pygame.K_LEFT: "left",
+    pygame.K_RIGHT: "right",
+    pygame.K_RETURN: "confirm",
+    pygame.K_KP_ENTER: "confirm",
+    pygame.K_SPACE: "confirm",
+    pygame.K_ESCAPE: "back",
+}
+
+
+def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | None:
+    """The action of a pygame event, None where it means nothing. ``pixel_ratio``: device pixels per window pixel."""
+    if event.type == pygame.QUIT:
+        return Action("quit")
+    if event.type == pygame.KEYDOWN:
+        fast = bool(event.mod & pygame.KMOD_SHIFT)
+        if event.key == pygame.K_RETURN and event.mod & pygame.KMOD_ALT:
+            return Action("key", key="f11")
+        if event.key in _KEYS:
+            return Action(_KEYS[event.key], fast=fast)
+        return Action("key", key=pygame.key.name(event.key).lower(), fast=fast)
+    if event.type == pygame.MOUSEMOTION:
+        return Action("pointer", at=_scaled(event.pos, pixel_ratio))
+    if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+        return Action("click", at=_scaled(event.pos, pixel_ratio))
+    if event.type == pygame.MOUSEBUTTONDOWN and event.button == 3:
+        return Action("back")
+    if event.type == pygame.MOUSEWHEEL:
+        return Action("wheel", amount=int(event.y))
+    if event.type in {pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED}:
+        return Action("resize")
+    return None
+
+
+def _scaled(at: tuple[int, int], ratio: float) -> tuple[float, float]:
+    return at[0] * ratio, at[1] * ratio

@@ -1,0 +1,219 @@
+"""The talk: subtitles, choices, the offer dial, and whatever the overlays show on top."""
+
+from __future__ import annotations
+
+from game.app.input import Action
+from game.app.overlays import draw_overlays
+from game.app.session import Screen, Session
+from game.app.strings import yen
+from game.app.talk import MONEY_STEP, Choice, ask_money
+from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
+from game.app.world import Intent
+from game.story import Choice as StoryChoice
+
+__all__ = ["TalkScreen"]
+
+CARD_WIDTH = 372.0
+OVERLAY_KEYS = {"f1": "feelings", "f2": "units", "f3": "networks"}
+STANDING = {"offer": "b", "wait": "w", "leave": "g"}
+
+
+class TalkScreen:
+    """Watch, choose what to say, say a price with it or not, wait, or go."""
+
+    def __init__(self) -> None:
+        self._buttons = Buttons()
+        self._with_offer = False
+        self._amount = 0
+        self._intent = Intent()
+
+    # --- input ---------------------------------------------------------------------------------------------------
+    def handle(self, session: Session, action: Action) -> Screen | None:
+        if action.kind == "back":
+            from game.app.screens.title import TitleScreen
+
+            return TitleScreen()
+        if action.kind == "key" and action.key in OVERLAY_KEYS:
+            session.overlays ^= {OVERLAY_KEYS[action.key]}
+            return None
+        world = session.world
+        if world.over:
+            if action.kind in {"confirm", "click"}:
+                from game.app.screens.outcome import OutcomeScreen
+
+                return OutcomeScreen.of(session)
+            return None
+        if not world.waiting:
+            if action.kind in {"confirm", "click"}:
+                self._intent = Intent(proceed=True)
+            return None
+        self._choose(session, action)
+        return None
+
+    def _choose(self, session: Session, action: Action) -> None:
+        step = MONEY_STEP * (10 if action.fast else 1)
+        if action.kind in {"left", "right"}:
+            self._turn(session, step if action.kind == "right" else -step)
+            return
+        if action.kind == "wheel":
+            self._turn(session, action.amount * MONEY_STEP)
+            return
+        pressed = self._buttons.handle(action)
+        if pressed is None:
+            return
+        if pressed == "dial":
+            self._with_offer = not self._with_offer
+        elif pressed in {"less", "more"}:
+            self._turn(session, (-1 if pressed == "less" else 1) * MONEY_STEP * (10 if action.fast else 5))
+        elif pressed == "meet":
+            self._with_offer, self._amount = True, self._limit(session)
+        else:
+            self._say(session, pressed)
+
+    def _say(self, session: Session, choice_id: str) -> None:
+        assert session.world.talk is not None
+        act = session.world.talk.beat.choice(choice_id).act
+        carries = act == "offer" or (self._with_offer and act not in {"wait", "leave"})
+        self._intent = Intent(choice=Choice(choice_id, self._amount if carries else None))
+        if carries:
+            self._with_offer = False
+
+    def _limit(self, session: Session) -> int:
+        talk = session.world.talk
+        assert talk is not None
+        return max(min(ask_money(talk.list_price, talk.bargain.ask), talk.purse // MONEY_STEP * MONEY_STEP), MONEY_STEP)
+
+    def _turn(self, session: Session, change: int) -> None:
+        self._with_offer = True
+        self._amount = min(max(self._amount + change, MONEY_STEP), self._limit(session))
+
+    def intent(self) -> Intent:
+        intent, self._intent = self._intent, Intent()
+        return intent
+
+    def after_tick(self, session: Session) -> Screen | None:
+        talk = session.world.talk
+        if talk is not None and (self._amount == 0 or self._amount > self._limit(session)):
+            start = talk.bargain.offer or 0.6
+            self._amount = min(round(start * talk.list_price / MONEY_STEP) * MONEY_STEP, self._limit(session))
+        return None
+
+    # --- drawing -------------------------------------------------------------------------------------------------
+    def draw(self, session: Session, canvas: Canvas) -> None:
+        self._draw_price(session, canvas)
+        if session.world.waiting:
+            self._draw_choices(session, canvas)
+        else:
+            self._buttons.lay([])
+        self._draw_subtitles(session, canvas)
+        draw_overlays(session, canvas)
+
+    def _draw_price(self, session: Session, canvas: Canvas) -> None:
+        s, talk = session.strings, session.world.talk
+        if talk is None:
+            return
+        box = Rect(canvas.width - CARD_WIDTH - 20, 18, CARD_WIDTH, 74)
+        canvas.panel(box, border=2, shadow=10)
+        item = session.assets.talk.script.items[talk.item]
+        canvas.text(box.x + 16, box.y + 9, item.name.get(s.language), 19, INK, font="bold")
+        rounds = session.assets.talk.market.rounds
+        done = min(talk.bargain.round + (0 if talk.ended else 1), rounds)
+        canvas.text(box.x + 16, box.y + 41, s("purse", money=yen(talk.purse)), 16, PALETTE["faint"])
+        canvas.text(
+            box.x + 190, box.y + 41, s("round", round=done, rounds=rounds), 16, PALETTE["faint"], align="center"
+        )
+        right = box.x + box.w - 16
+        canvas.text(right, box.y + 7, s("asking"), 14, PALETTE["faint"], align="right")
+        ask = yen(ask_money(talk.list_price, talk.bargain.ask))
+        canvas.text(right, box.y + 24, ask, 31, PALETTE["red"], font="title", align="right")
+
+    def _draw_choices(self, session: Session, canvas: Canvas) -> None:
+        s, talk = session.strings, session.world.talk
+        assert talk is not None
+        left, y = canvas.width - CARD_WIDTH - 20, 106.0
+        options = list(talk.beat.choices)
+        lines = [c for c in options if c.act not in STANDING]
+        buttons: list[Button] = []
+        height = 74.0 if len(lines) <= 4 else 60.0
+        for i, choice in enumerate(lines):
+            note = choice.reason.get(s.language) if choice.reason is not None and not choice.available else ""
+            buttons.append(
+                Button(
+                    choice.id,
+                    self._shown(choice, s.language),
+                    Rect(left, y, CARD_WIDTH, height),
+                    enabled=choice.available,
+                    key=str(i + 1),
+                    badge=str(i + 1),
+                    note=note,
+                    size=18,
+                )
+            )
+            y += height + 8
+        buttons += self._dial(session, canvas, left, y)
+        y += 56
+        standing = [c for c in options if c.act in STANDING]
+        width = (CARD_WIDTH - 8 * (len(standing) - 1)) / max(len(standing), 1)
+        for i, choice in enumerate(standing):
+            buttons.append(
+                Button(
+                    choice.id,
+                    self._label(session, choice),
+                    Rect(left + i * (width + 8), y, width, 44),
+                    enabled=choice.available,
+                    key=STANDING[choice.act],
+                    size=15,
+                )
+            )
+        self._buttons.lay(buttons)
+        self._buttons.draw(canvas)
+        canvas.text(canvas.width - 20, canvas.height - 24, s("hint_talk"), 12.5, PALETTE["white"], align="right")
+
+    def _dial(self, session: Session, canvas: Canvas, left: float, y: float) -> list[Button]:
+        s = session.strings
+        text = s("offer_with", money=yen(self._amount)) if self._with_offer else s("no_offer")
+        if self._with_offer:
+            canvas.panel(Rect(left - 4, y - 4, CARD_WIDTH + 8, 56), fade(PALETTE["red"], 0.9), radius=18)
+        return [
+            Button("less", "−", Rect(left, y, 44, 48), size=24),
+            Button("dial", text, Rect(left + 50, y, CARD_WIDTH - 168, 48), key="o", size=17),
+            Button("more", "+", Rect(left + CARD_WIDTH - 112, y, 44, 48), size=24),
+            Button("meet", s("asking"), Rect(left + CARD_WIDTH - 62, y, 62, 48), key="p", size=14),
+        ]
+
+    def _shown(self, choice: StoryChoice, language: str) -> str:
+        return choice.text(language).replace("{offer}", yen(self._amount))
+
+    def _label(self, session: Session, choice: StoryChoice) -> str:
+        return self._shown(choice, session.strings.language)
+
+    def _draw_subtitles(self, session: Session, canvas: Canvas) -> None:
+        world, s = session.world, session.strings
+        line = world.speech.line if world.speech is not None else (world.backlog[-1] if world.backlog else None)
+        if line is None:
+            return
+        room = canvas.width - CARD_WIDTH - 60
+        width = min(room, 700.0)
+        box = Rect(20 + (room - width) / 2, canvas.height - 138, width, 118)
+        resting = world.speech is None
+        canvas.panel(box, fade(PALETTE["paper"], 0.86 if resting else 1.0), border=3, shadow=12, radius=20)
+        names = {
+            "shopkeeper": session.assets.talk.script.person.name.get(s.language),
+            "player": s("you"),
+            "narrator": "",
+        }
+        name = names[line.speaker]
+        if name:
+            tag = canvas.measure(name, 18, "bold") + 32
+            colour = PALETTE["red"] if line.speaker == "shopkeeper" else PALETTE["indigo"]
+            canvas.panel(Rect(box.x + 22, box.y - 17, tag, 34), colour, radius=17)
+            canvas.text(box.x + 38, box.y - 12, name, 18, PALETTE["white"], font="bold")
+        text = line.text(world.language)
+        shown = None
+        if world.speech is not None and not world.speech.hurried:
+            shown = world.speech.timed.visible(world.time_s - world.speech.started_s)
+        colour = INK if line.speaker != "narrator" else PALETTE["faint"]
+        canvas.paragraph(Rect(box.x + 28, box.y + 22, box.w - 70, 86), text, 24, colour, shown=shown)
+        if not resting or world.over:
+            beat = 0.5 + 0.5 * abs((world.time_s * 1.4) % 2.0 - 1.0)
+            canvas.text(box.x + box.w - 24, box.y + 84, "▸", 22, fade(PALETTE["red"], beat), align="right")

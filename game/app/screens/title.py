@@ -1,0 +1,128 @@
+"""The title: the stall with its shopkeeper behind, the name of the game, a short menu."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from game.app.afternoon import Afternoon
+from game.app.input import Action
+from game.app.session import Screen, Session
+from game.app.settings import CHOICES, Settings, save_settings
+from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
+from game.app.world import Intent, leave_talk
+
+__all__ = ["SettingsScreen", "TitleScreen"]
+
+
+class TitleScreen:
+    """Where the game begins and where an afternoon ends."""
+
+    def __init__(self) -> None:
+        self._buttons = Buttons(focus="play")
+
+    def handle(self, session: Session, action: Action) -> Screen | None:
+        pressed = self._buttons.handle(action)
+        if action.kind == "back":
+            session.running = False
+        elif pressed == "play":
+            from game.app.screens.table import TableScreen
+
+            session.afternoon = Afternoon(seed=session.world.seed)
+            session.world = leave_talk(session.world)
+            return TableScreen()
+        elif pressed == "continue":
+            from game.app.screens.table import TableScreen
+
+            return TableScreen.where_it_was(session)
+        elif pressed == "language":
+            change_setting(session, "language")
+        elif pressed == "settings":
+            return SettingsScreen(self)
+        elif pressed == "quit":
+            session.running = False
+        return None
+
+    def intent(self) -> Intent:
+        return Intent()
+
+    def after_tick(self, session: Session) -> Screen | None:
+        return None
+
+    def draw(self, session: Session, canvas: Canvas) -> None:
+        s = session.strings
+        left, width = 64.0, 320.0
+        canvas.panel(Rect(40, 150, 470, 160), fade(PALETTE["shade"], 0.62), radius=26)
+        title = s("title")
+        size = 52.0
+        while canvas.measure(title, size, "title") > 440 and " " not in title:
+            size -= 2
+        rows = title.rsplit(" ", 1) if " " in title else [title]
+        for i, row in enumerate(rows):
+            canvas.text(left, 166 + i * 52, row, size if len(rows) == 1 else 44, PALETTE["white"], font="title")
+        canvas.text(left, 272, s("subtitle"), 17, fade(PALETTE["paper_warm"], 0.98))
+        entries = ["play"]
+        if session.world.talk is not None or session.afternoon.visits:
+            entries.insert(0, "continue")
+        entries += ["language", "settings", "quit"]
+        self._buttons.lay(
+            [Button(name, s(name), Rect(left, 334 + i * 60, width, 50), size=20) for i, name in enumerate(entries)]
+        )
+        self._buttons.draw(canvas)
+        if session.message:
+            canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
+
+
+class SettingsScreen:
+    """The player's settings, each pressed through its values."""
+
+    def __init__(self, before: Screen) -> None:
+        self._before = before
+        self._buttons = Buttons()
+
+    def handle(self, session: Session, action: Action) -> Screen | None:
+        pressed = self._buttons.handle(action)
+        if action.kind == "back" or pressed == "back":
+            return self._before
+        if pressed in CHOICES:
+            change_setting(session, pressed)
+        return None
+
+    def intent(self) -> Intent:
+        return Intent()
+
+    def after_tick(self, session: Session) -> Screen | None:
+        return None
+
+    def draw(self, session: Session, canvas: Canvas) -> None:
+        s = session.strings
+        left = (canvas.width - 460) / 2
+        names = ["language", "text_speed", "fullscreen", "ui_scale", "captions", "quality"]
+        canvas.panel(Rect(left - 40, 96, 540, 92 + 62 * (len(names) + 1)), border=3, shadow=14)
+        canvas.text(canvas.width / 2, 116, s("settings"), 32, INK, font="title", align="center")
+        buttons = [
+            Button(name, _label(session, name), Rect(left, 172 + i * 62, 460, 52)) for i, name in enumerate(names)
+        ]
+        buttons.append(Button("back", s("back"), Rect(left + 130, 172 + len(names) * 62, 200, 46)))
+        self._buttons.lay(buttons)
+        self._buttons.draw(canvas)
+
+
+def _label(session: Session, name: str) -> str:
+    s, value = session.strings, getattr(session.settings, name)
+    if name == "language":
+        return s("language")
+    if isinstance(value, bool):
+        return s(name, value=s("on" if value else "off"))
+    if isinstance(value, float):
+        return s(name, value=f"{value:.0%}")
+    return s(name, value=s(value) if value in s.texts else value)
+
+
+def change_setting(session: Session, name: str) -> None:
+    """Move a setting to its next value, apply what is ours to apply, and keep it."""
+    settings: Settings = session.settings.next(name)
+    session.settings = settings
+    if name == "language":
+        session.strings = session.strings.switched(settings.language)
+        session.world = replace(session.world, language=settings.language)
+    session.message = save_settings(settings) or ""

@@ -1,0 +1,42 @@
+"""The running game as its screens see it, and what a screen is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from game.app.afternoon import Afternoon
+from game.app.input import Action
+from game.app.settings import Settings
+from game.app.step import StepAssets
+from game.app.strings import Strings
+from game.app.ui import Canvas
+from game.app.world import Intent, World
+
+__all__ = ["Screen", "Session"]
+
+
+@dataclass
+class Session:
+    """The running game as the screens see it. ``world`` is replaced by every tick; screens never change it."""
+
+    assets: StepAssets
+    world: World
+    strings: Strings
+    settings: Settings
+    afternoon: Afternoon
+    overlays: set[str] = field(default_factory=set)
+    message: str = ""
+    running: bool = True
+
+
+class Screen(Protocol):
+    """One screen of the game. ``handle`` may return another screen to go to; ``intent`` is what the next tick does."""
+
+    def handle(self, session: Session, action: Action) -> Screen | None: ...
+
+    def intent(self) -> Intent: ...
+
+    def after_tick(self, session: Session) -> Screen | None: ...
+
+    def draw(self, session: Session, canvas: Canvas) -> None: ...

@@ -1,0 +1,126 @@
+"""What is seen: the shopkeeper's model and rig, the stall, and turning a world into a frame for the renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.animation import Pose, Rig, RigState
+from game.app.rig import load_rig
+from game.core.paths import ASSETS
+from game.face import DrawList, FaceParams, tessellate
+from game.render import (
+    HERO,
+    Camera,
+    CharacterModel,
+    FrameView,
+    Hud,
+    StaticMesh,
+    load_character,
+    load_picture,
+    load_stall,
+)
+
+__all__ = ["HOME_CAMERA", "TALK_CAMERA", "Puppet", "StageAssets", "StageShow", "load_stage"]
+
+TALK_CAMERA = Camera((0.36, 1.15, 3.16), (0.26, 0.93, 0.0), 25.5)
+"""The talk is framed with room on the right for what may be said, and the hands above the subtitles."""
+
+
+HOME_CAMERA = HERO
+"""Title and menus: the whole stall."""
+
+
+@dataclass(frozen=True, eq=False)
+class StageAssets:
+    """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8."""
+
+    model: CharacterModel
+    rig: Rig
+    stall: StaticMesh
+    backdrop: NDArray[np.uint8]
+
+
+def load_stage(person: str = "mira", stall: str = "flea", folder: Path = ASSETS) -> StageAssets:
+    """Read a person and a stall. Raises BadInput with file and JSON pointer."""
+    characters, stalls = folder / "characters", folder / "stalls"
+    return StageAssets(
+        model=load_character(characters / f"{person}.vrm"),
+        rig=load_rig(characters / f"{person}.vrm"),
+        stall=load_stall(stalls / f"{stall}.glb"),
+        backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
+    )
+
+
+@dataclass
+class Puppet:
+    """The rig in motion between ticks: spring bones advance once per tick, poses are blended for frames between."""
+
+    rig: Rig
+    state: RigState
+    before: NDArray[np.float32]
+    after: NDArray[np.float32]
+
+    @staticmethod
+    def of(rig: Rig, pose: Pose) -> Puppet:
+        """A puppet at rest in a pose."""
+        state = rig.start(len(pose))
+        state, matrices = rig.advance(state, pose, 0.0)
+        return Puppet(rig, state, matrices, matrices)
+
+    def tick(self, pose: Pose, dt_s: float) -> None:
+        """One tick on: the last skin matrices become those before."""
+        self.before = self.after
+        self.state, self.after = self.rig.advance(self.state, pose, dt_s)
+
+    def matrices(self, share: float) -> NDArray[np.float32]:
+        """(J, 4, 4) skin matrices at a share in [0, 1] between the last two ticks."""
+        # Ticks are a thirtieth of a second apart: blending matrices linearly is exact enough to be invisible.
+        mixed = self.before[0] + (self.after[0] - self.before[0]) * np.float32(share)
+        return np.asarray(mixed)
+
+
+@dataclass
+class StageShow:
+    """Turns poses and faces into frames; keeps the face's triangles until its numbers change."""
+
+    assets: StageAssets
+    puppet: Puppet | None = None
+    _face: DrawList | None = None
+    _params: FaceParams | None = None
+
+    def tick(self, pose: Pose, dt_s: float) -> None:
+        """Follow the world by one tick."""
+        if self.puppet is None:
+            self.puppet = Puppet.of(self.assets.rig, pose)
+        else:
+            self.puppet.tick(pose, dt_s)
+
+    def frame(
+        self,
+        params: FaceParams,
+        *,
+        camera: Camera = TALK_CAMERA,
+        share: float = 1.0,
+        show_face: bool = True,
+        hidden_items: frozenset[str] = frozenset(),
+        time_s: float = 0.0,
+        hud: Callable[[Hud], None] | None = None,
+    ) -> FrameView:
+        """The frame as the renderer wants it."""
+        if self._face is None or self._params is None or np.abs(params - self._params).max() > 1e-3:
+            self._face, self._params = tessellate(params), params.copy()
+        assert self.puppet is not None, "tick comes before frame"
+        return FrameView(
+            skin_matrices=self.puppet.matrices(share),
+            camera=camera,
+            face=self._face,
+            show_face=show_face,
+            hidden_items=hidden_items,
+            time_s=time_s,
+            hud=hud,
+        )

@@ -1,0 +1,243 @@
+"""The heart: one fixed tick of the world, as a visible list of stages. No I/O, no drawing, no wall clock.
+
+    choice          -> story, market, appraisal (game.app.talk) -> lines + feelings
+    feelings        -> felt (leaks into the body), shown (behind the mask)
+    felt + words    -> embos.planner  -> one unit per layer
+    units + felt    -> animation      -> pose
+    shown           -> face           -> one part per region
+
+The window, headless autoplay, snapshot and film all call this same step with the same dt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.animation import Performer, PerformSignal
+from game.app.talk import TalkAssets, TalkState, choose
+from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Mark, Speech, World
+from game.core.emotion_space import EMOTIONS, SIX, with_neutral
+from game.core.springs import damp
+from game.embos import GestureCues, Planner, PlannerSignal
+from game.emotion import shown_emotion
+from game.face import FaceAsset, FaceSignal, advance_face, start_face, viseme_track
+from game.story import Spoken, TimedText
+
+__all__ = ["STAGES", "StepAssets", "new_world", "step", "targets_of"]
+
+Floats = NDArray[np.float64]
+
+FELT_HALF_LIFE_S = 0.28
+"""How fast the body's emotion follows what is felt: a jump is there within a second."""
+SHOWN_HALF_LIFE_S = 0.12
+BURST_S = 1.2
+"""A reaction leaks strongest for about this long …"""
+BURST_GAIN = 0.45
+"""… by this share of the felt emotion on top, and leaves a residue in the posture."""
+AFTER_LINE_S = 0.35
+"""A breath after each line before the next may begin by itself."""
+CUSTOMER_GAZE = np.array([0.0, 1.16, 3.0])
+
+
+@dataclass(frozen=True, eq=False)
+class StepAssets:
+    """What a step needs and never changes. performer and face are None where nobody looks (autoplay)."""
+
+    talk: TalkAssets
+    planner: Planner
+    performer: Performer | None = None
+    face: FaceAsset | None = None
+
+
+def targets_of(assets: StepAssets, talk: TalkState) -> tuple[Floats, Floats]:
+    """(6,) felt and (7,) shown as the talk has them now."""
+    return talk.feeling.felt, shown_emotion(assets.talk.person, talk.feeling)
+
+
+def new_world(assets: StepAssets, seed: int, *, language: str = "en", text_speed: str = "normal") -> World:
+    """A world before its first tick: the shopkeeper calm behind the table."""
+    planner = assets.planner.start(1, seed)
+    performer = None if assets.performer is None else assets.performer.start(1, seed)
+    face = None if assets.face is None else start_face(assets.face, seed)
+    body = Body(planner=planner, decisions=planner.decisions, performer=performer, face=face)
+    return World(seed=seed, body=body, language=language, text_speed=text_speed)
+
+
+# --- stages: each (assets, world, intent) -> world ---------------------------------------------------------------
+def story_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """The player's choice runs through story, appraisal and market and comes back as lines."""
+    if intent.choice is None or world.talk is None or not world.waiting:
+        return world
+    said = world.talk.beat.choice(intent.choice.id)
+    talk = choose(assets.talk, world.talk, intent.choice)
+    record = dict(talk.record)
+    mark = Mark(
+        round=len(world.marks),
+        act=str(record["act"]),
+        quality=str(record["quality"]),
+        felt=tuple(float(v) for v in record["felt"]),
+        shown=tuple(float(v) for v in record["shown"]),
+        text_en=said.en,
+        text_ja=said.ja,
+    )
+    return replace(world, talk=talk, queue=talk.beat.lines, marks=(*world.marks, mark))
+
+
+def speech_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """One line after another; each begins when the one before has been spoken and the player goes on."""
+    speech = world.speech
+    if speech is not None:
+        spoken = world.time_s - speech.started_s >= speech.timed.length_s + AFTER_LINE_S
+        if intent.proceed and not (spoken or speech.hurried):
+            return replace(world, speech=replace(speech, hurried=True))
+        if not intent.proceed:
+            return world
+        world = replace(world, speech=None)
+        if not world.queue:
+            # Everything is said: what is felt now is what the next line will be judged by.
+            return _settle(assets, world)
+    if not world.queue:
+        return world
+    line, rest = world.queue[0], world.queue[1:]
+    world = replace(world, queue=rest, speech=_speech(assets, world, line), backlog=(*world.backlog[-99:], line))
+    if line.speaker != "player" and world.talk is not None and world.talk.record:
+        # Cause before effect: the reaction shows when the shopkeeper begins to answer.
+        record = dict(world.talk.record)
+        felt = np.asarray(record["felt"])[:6]
+        if not np.array_equal(felt, world.felt_target):
+            return replace(
+                world, felt_target=felt, shown_target=np.asarray(record["shown"]), burst_s=world.time_s + 0.3
+            )
+    return world
+
+
+def _settle(assets: StepAssets, world: World) -> World:
+    if world.talk is None:
+        return world
+    felt, shown = targets_of(assets, world.talk)
+    return replace(world, felt_target=felt, shown_target=shown)
+
+
+def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
+    factor = TEXT_SPEED[world.text_speed]
+    plain = TimedText(line.text(world.language), world.language)
+    chars_per_s = None if factor is None else factor * max(len(plain.text), 1) / max(plain.length_s, 1e-3)
+    timed = plain if chars_per_s is None else TimedText(plain.text, world.language, chars_per_s)
+    cues = None
+    if line.speaker == "shopkeeper":
+        cues = GestureCues.from_tokens(assets.planner.library, _tokens(plain, world.time_s), world.language)
+    visemes = None
+    if assets.face is not None and line.speaker == "shopkeeper":
+        visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
+    return Speech(line, timed, world.time_s, cues, visemes, hurried=factor is None)
+
+
+def _tokens(timed: TimedText, start_s: float) -> list[tuple[str, float]]:
+    """(token, world time) of a line: words where they are spaced, else the rest of the line at every character."""
+    if timed.language == "ja":
+        return [(timed.text[i:], start_s + at) for i, at in enumerate(timed.char_s)]
+    return [(word.text, start_s + word.start_s) for word in timed.words]
+
+
+def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """What the body feels and the face shows follow their targets; both fast, neither at once."""
+    felt = damp(world.felt, world.felt_target, FELT_HALF_LIFE_S, TICK_S)
+    shown = damp(world.shown[:6], world.shown_target[:6], SHOWN_HALF_LIFE_S, TICK_S)
+    return replace(world, felt=felt, shown=with_neutral(shown))
+
+
+def body_emotion(assets: StepAssets, world: World) -> Floats:
+    """(7,) what drives posture and mannerism: the felt emotion as far as it leaks, strongest in the burst."""
+    leak = assets.talk.person.leak
+    felt = world.felt * leak + world.shown[:6] * (1.0 - leak)
+    since = (world.time_s - world.burst_s) / BURST_S
+    gain = 1.0 + BURST_GAIN * float(np.exp(-since * since * 2.0))
+    return with_neutral(np.clip(felt * gain, 0.0, 1.0))
+
+
+def planner_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """Eq. 1 for every layer."""
+    library = assets.planner.library
+    emotion = body_emotion(assets, world)[None, :]
+    words = np.zeros((1, len(library.gestures)))
+    if world.speech is not None and world.speech.cues is not None:
+        words = world.speech.cues.factors(world.time_s, library.stroke_lead_s(emotion)[0])[None, :]
+    signal = PlannerSignal(emotion=emotion, words=words, time_s=world.time_s)
+    state, decisions = assets.planner.advance(world.body.planner, signal, TICK_S)
+    return replace(world, body=replace(world.body, planner=state, decisions=decisions, signal=signal))
+
+
+def speaking(world: World) -> bool:
+    """Whether the shopkeeper's mouth is moving now."""
+    speech = world.speech
+    if speech is None or speech.line.speaker != "shopkeeper":
+        return False
+    return world.time_s - speech.started_s < speech.timed.length_s
+
+
+def performer_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """Units to one pose."""
+    if assets.performer is None or world.body.performer is None or world.body.signal is None:
+        return world
+    signal = PerformSignal(
+        emotion=world.body.signal.emotion,
+        gaze_target=CUSTOMER_GAZE[None, :],
+        speaking=np.array([float(speaking(world))]),
+        mode=world.mode,
+    )
+    state, pose = assets.performer.advance(world.body.performer, world.body.decisions, signal, TICK_S)
+    return replace(world, body=replace(world.body, performer=state, pose=pose))
+
+
+def face_stage(assets: StepAssets, world: World, intent: Intent) -> World:
+    """The shown emotion to one part per region, over time."""
+    if assets.face is None or world.body.face is None:
+        return world
+    pose, speech = world.body.pose, world.speech
+    shown, named, visemes = world.shown, None, None
+    if speech is not None and speech.line.speaker == "shopkeeper":
+        visemes = None if speech.visemes is None else speech.visemes.at(world.time_s - speech.started_s)
+        if speech.line.face is not None:
+            # What the script asks for belongs to the words: a drawn expression, or a nudge on what is shown.
+            named = speech.line.face if speech.line.face in assets.face.expressions else None
+            nudge = assets.talk.script.faces.get(speech.line.face, {})
+            change = np.array([nudge.get(name, 0.0) for name in SIX])
+            shown = with_neutral(np.clip(shown[:6] + change, 0.0, 1.0))
+    signal = FaceSignal(
+        shown=shown,
+        felt=with_neutral(world.felt),
+        blink=0.0 if pose is None else float(pose.blink[0]),
+        look=None if pose is None else pose.gaze[0],
+        visemes=visemes,
+        expression=named,
+    )
+    state, params = advance_face(assets.face, world.body.face, signal, TICK_S)
+    return replace(world, body=replace(world.body, face=state, face_params=params))
+
+
+STAGES = (story_stage, speech_stage, feeling_stage, planner_stage, performer_stage, face_stage)
+
+
+def step(assets: StepAssets, world: World, intent: Intent = Intent()) -> World:  # noqa: B008 - frozen, never changed
+    """The next world: every stage in order, then the clock."""
+    for stage in STAGES:
+        world = stage(assets, world, intent)
+    return replace(world, tick=world.tick + 1)
+
+
+def unit_names(assets: StepAssets, world: World, language: str = "en") -> list[tuple[str, int, str]]:
+    """(layer, index, title) of the active nodes, as in the paper's figure 6."""
+    library = assets.planner.library
+    return [
+        (library.units[i].layer, int(i), library.units[i].title(language))
+        for i in world.body.decisions.unit[0]
+        if i >= 0
+    ]
+
+
+def emotion_table(values: Floats) -> dict[str, float]:
+    """Names to values, for overlays and logs."""
+    return {name: float(v) for name, v in zip(EMOTIONS, values, strict=True)}

@@ -1,0 +1,142 @@
+"""The world: one dataclass that owns everything that changes, and what the player asks of the next tick."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.app.talk import Choice, TalkState
+from game.core.emotion_space import with_neutral
+from game.embos import Decisions, GestureCues, PlannerSignal, PlannerState
+from game.face import VisemeTrack
+from game.story import Spoken, TimedText
+
+if TYPE_CHECKING:
+    from game.animation import Mode, PerformerState, Pose
+    from game.app.step import StepAssets
+    from game.face import FaceParams, FaceState
+
+__all__ = ["TEXT_SPEED", "TICK_S", "Body", "Intent", "Mark", "Speech", "World", "enter_talk", "leave_talk"]
+
+Floats = NDArray[np.float64]
+
+TICK_S = 1.0 / 30.0
+"""The fixed step of the simulation, seconds."""
+
+TEXT_SPEED: dict[str, float | None] = {"slow": 0.6, "normal": 1.0, "fast": 1.8, "instant": None}
+"""How fast lines are spoken, as a factor on the language's own speed; None shows a line at once."""
+
+
+@dataclass(frozen=True)
+class Intent:
+    """What the player asks of a tick: a choice, or to go on to the next line (or finish the one being spoken)."""
+
+    choice: Choice | None = None
+    proceed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Speech:
+    """A line being spoken. started_s: world time; hurried: the player has seen enough, the text stands whole."""
+
+    line: Spoken
+    timed: TimedText
+    started_s: float
+    cues: GestureCues | None = None
+    visemes: VisemeTrack | None = None
+    hurried: bool = False
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A point on the afternoon's curve: what was felt and shown, and the player's move that led there."""
+
+    round: int
+    act: str
+    quality: str
+    felt: tuple[float, ...]
+    shown: tuple[float, ...]
+    text_en: str = ""
+    text_ja: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """The character's body over time: planner, performer and face, each with its last output."""
+
+    planner: PlannerState
+    decisions: Decisions
+    performer: PerformerState | None = None
+    pose: Pose | None = None
+    face: FaceState | None = None
+    face_params: FaceParams | None = None
+    signal: PlannerSignal | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class World:
+    """Everything that changes while the game runs; ``step`` makes the next one from it.
+
+    tick: fixed steps done. felt, shown: (6,) and (7,) as they stand in the body and on the face now, following
+    ``felt_target`` and ``shown_target``. burst_s: world time at which the present reaction peaks.
+    """
+
+    seed: int
+    body: Body
+    tick: int = 0
+    language: str = "en"
+    text_speed: str = "normal"
+    mode: Mode = "full"
+    talk: TalkState | None = None
+    speech: Speech | None = None
+    queue: tuple[Spoken, ...] = ()
+    backlog: tuple[Spoken, ...] = ()
+    felt: Floats = field(default_factory=lambda: np.zeros(6))
+    shown: Floats = field(default_factory=lambda: with_neutral(np.zeros(6)))
+    felt_target: Floats = field(default_factory=lambda: np.zeros(6))
+    shown_target: Floats = field(default_factory=lambda: with_neutral(np.zeros(6)))
+    burst_s: float = -1e9
+    marks: tuple[Mark, ...] = ()
+
+    @property
+    def time_s(self) -> float:
+        """Simulated seconds since the world began."""
+        return self.tick * TICK_S
+
+    @property
+    def waiting(self) -> bool:
+        """Whether the player may choose: a talk goes on and nobody is speaking."""
+        return self.talk is not None and not self.talk.ended and self.speech is None and not self.queue
+
+    @property
+    def over(self) -> bool:
+        """Whether the talk has ended and its last line has been spoken."""
+        return self.talk is not None and self.talk.ended and self.speech is None and not self.queue
+
+
+def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
+    """The player steps up to the table: the first lines are queued, the feelings are those of the talk."""
+    from game.app.step import targets_of
+
+    felt, shown = targets_of(assets, talk)
+    mark = Mark(0, "", "", tuple(np.append(felt, 0.0)), tuple(shown))
+    return replace(
+        world,
+        talk=talk,
+        speech=None,
+        queue=talk.beat.lines,
+        backlog=(),
+        felt_target=felt,
+        shown_target=shown,
+        marks=(mark,),
+    )
+
+
+def leave_talk(world: World) -> World:
+    """Nobody is talked to: calm, with a host's small smile."""
+    calm = np.zeros(6)
+    calm[2] = 0.25
+    return replace(world, talk=None, speech=None, queue=(), felt_target=calm, shown_target=with_neutral(calm), marks=())
