@@ -1,0 +1,247 @@
+"""The performer's data, read strictly: effort by emotion, hand targets and finger poses, the repertoire, the scores."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.core import ASSETS, EMOTIONS
+from game.core.errors import BadInput
+from game.core.humanoid import BODY_PARTS
+from game.formats.yaml_source import Node, load_yaml
+from game.tools.perform.body import CHANNELS
+from game.tools.perform.timing import Ease
+
+__all__ = [
+    "MOTION",
+    "Behaviour",
+    "Breath",
+    "Cue",
+    "Effort",
+    "Line",
+    "Score",
+    "Target",
+    "load_effort",
+    "load_hands",
+    "load_repertoire",
+    "load_score",
+]
+
+Floats = NDArray[np.floating[Any]]
+MOTION = ASSETS / "motion"
+LAYERS = ("posture", "mannerism", "gesture")
+_SPACES = ("world", "chest", "hips", "head")
+
+
+@dataclass(frozen=True)
+class Breath:
+    """Breaths per minute; depth 1 = 3.2 degrees of the chest; the shoulders' share; the inhaling share of a cycle."""
+
+    rate: float
+    depth: float
+    shoulders: float
+    inhale: float
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How an emotion moves; see assets/motion/effort.yaml for every field."""
+
+    tempo: float
+    ease: Ease
+    strike: Ease
+    settle: Ease
+    spring: tuple[float, float, float]
+    drag: float
+    hand: tuple[float, float]
+    arc: float
+    wrist_lag_s: float
+    breath: Breath
+    sway: float
+    sway_band_hz: tuple[float, float]
+    tremor: float
+    carriage: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Target:
+    """Where a left hand goes: see assets/motion/hands.yaml. curls: (5, 3) degrees."""
+
+    space: str
+    at: Floats
+    fingers: Floats
+    back: Floats
+    elbow: Floats
+    curls: Floats
+    contact: float
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """What the repertoire says of one behaviour, as far as the performer needs it."""
+
+    name: str
+    layer: str
+    uses: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Cue:
+    """One line of a score: what to do when. Times in seconds, ``at`` from the take's start."""
+
+    at_s: float
+    do: str
+    hold_s: float
+    size: float
+    side: str
+    words: str | None
+    channels: Mapping[str, float]
+    tempo: float
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of the scene and when it starts."""
+
+    name: str
+    start_s: float
+    length_s: float
+
+
+@dataclass(frozen=True)
+class Score:
+    """The choreography of one take."""
+
+    take: str
+    emotion: str
+    seed: int
+    length_s: float
+    lines: tuple[Line, ...]
+    cues: tuple[Cue, ...]
+
+
+def _numbers(node: Node, count: int) -> tuple[float, ...]:
+    items = node.as_list()
+    if len(items) != count:
+        raise BadInput(where=node.where, expected=f"{count} numbers", seen=len(items))
+    return tuple(item.as_float() for item in items)
+
+
+def _channels(node: Node | None) -> dict[str, float]:
+    if node is None:
+        return {}
+    return {key.as_str(): value.as_float() for key, value in node.only(*CHANNELS).items()}
+
+
+def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
+    """The effort of one emotion. Raises BadInput with the place of what is wrong."""
+    node = load_yaml(path)["emotions"].only(*EMOTIONS)[emotion]
+    node.only(
+        "tempo",
+        "skew",
+        "strike",
+        "settle",
+        "sharp",
+        "anticipation",
+        "spring",
+        "drag",
+        "hand",
+        "arc",
+        "wrist_lag",
+        "breath",
+        "sway",
+        "tremor",
+        "carriage",
+    )
+    sharp, anticipation = node["sharp"].as_float(0, 2), node["anticipation"].as_float(0, 1)
+    breath, sway = node["breath"], node["sway"]
+    frequency, damping, response = _numbers(node["spring"], 3)
+    hand_frequency, hand_damping = _numbers(node["hand"], 2)
+    low, high = _numbers(sway["band"], 2)
+    return Effort(
+        tempo=node["tempo"].as_float(0.2, 5),
+        ease=Ease(node["skew"].as_float(0.2, 5), sharp, anticipation),
+        strike=Ease(node["strike"].as_float(0.2, 5), 0.4 * sharp, 0.0),
+        settle=Ease(node["settle"].as_float(0.2, 5), 0.0, 0.0),
+        spring=(frequency, damping, response),
+        drag=node["drag"].as_float(0, 5),
+        hand=(hand_frequency, hand_damping),
+        arc=node["arc"].as_float(-1, 1),
+        wrist_lag_s=node["wrist_lag"].as_float(0, 1),
+        breath=Breath(*(breath[name].as_float(0, 120) for name in ("rate", "depth", "shoulders", "inhale"))),
+        sway=sway["amplitude"].as_float(0, 5),
+        sway_band_hz=(low, high),
+        tremor=node["tremor"].as_float(0, 3),
+        carriage=_channels(node["carriage"]),
+    )
+
+
+def load_hands(path: Path = MOTION / "hands.yaml") -> tuple[dict[str, Target], dict[str, Floats]]:
+    """Hand targets and finger presets (5, 3) degrees by name."""
+    root = load_yaml(path).only("targets", "fingers")
+    fingers: dict[str, Floats] = {
+        key.as_str(): np.array([_numbers(row, 3) for row in value.as_list()]) for key, value in root["fingers"].items()
+    }
+    targets = {}
+    for key, node in root["targets"].items():
+        node.only("space", "at", "fingers", "back", "elbow", "preset", "contact")
+        space, preset = node["space"].as_str(), node["preset"].as_str()
+        if space not in _SPACES:
+            raise BadInput(where=node["space"].where, expected=f"one of {', '.join(_SPACES)}", seen=space)
+        if preset not in fingers:
+            raise BadInput(where=node["preset"].where, expected="a finger preset of this file", seen=preset)
+        at, point, back, elbow = (np.array(_numbers(node[name], 3)) for name in ("at", "fingers", "back", "elbow"))
+        targets[key.as_str()] = Target(space, at, point, back, elbow, fingers[preset], node["contact"].as_float(0, 1))
+    return targets, fingers
+
+
+def load_repertoire(path: Path = MOTION / "behaviours.yaml") -> dict[str, Behaviour]:
+    """Layer and used parts of every behaviour of the repertoire."""
+    out = {}
+    for key, node in load_yaml(path)["behaviours"].items():
+        layer = node["layer"].as_str()
+        if layer not in LAYERS:
+            raise BadInput(where=node["layer"].where, expected=f"one of {', '.join(LAYERS)}", seen=layer)
+        uses = frozenset(part.as_str() for part in node["uses"].as_list())
+        if not uses <= set(BODY_PARTS):
+            raise BadInput(where=node["uses"].where, expected=f"parts of {', '.join(BODY_PARTS)}", seen=sorted(uses))
+        out[key.as_str()] = Behaviour(key.as_str(), layer, uses)
+    return out
+
+
+def load_score(emotion: str, folder: Path = MOTION / "scores") -> Score:
+    """The score of one emotion's take; a cue's ``at`` counts from the start of its line in the scene."""
+    root = load_yaml(folder / f"{emotion}.yaml").only("take", "emotion", "seed", "scene")
+    start = 0.0
+    lines, cues = [], []
+    for line in root["scene"].as_list():
+        line.only("line", "length_s", "do")
+        length = line["length_s"].as_float(1, 120)
+        lines.append(Line(line["line"].as_str(), start, length))
+        for cue in line["do"].as_list():
+            cue.only("at", "do", "hold", "size", "side", "words", "with", "tempo")
+            side = cue.get("side")
+            words = cue.get("words")
+            hold, size, tempo = cue.get("hold"), cue.get("size"), cue.get("tempo")
+            cues.append(
+                Cue(
+                    at_s=start + cue["at"].as_float(0, length),
+                    do=cue["do"].as_str(),
+                    hold_s=0.8 if hold is None else hold.as_float(0, 30),
+                    size=1.0 if size is None else size.as_float(0.1, 3),
+                    side="left" if side is None else side.as_str(),
+                    words=None if words is None else words.as_str(),
+                    channels=_channels(cue.get("with")),
+                    tempo=1.0 if tempo is None else tempo.as_float(0.2, 5),
+                )
+            )
+        start += length
+    cues.sort(key=lambda cue: cue.at_s)
+    return Score(
+        root["take"].as_str(), root["emotion"].as_str(), root["seed"].as_int(0, 2**31), start, tuple(lines), tuple(cues)
+    )
