@@ -6,7 +6,8 @@ from game.embos.cues import GestureCues, timed_tokens
 from game.embos.explain import Candidate
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
-from game.embos.planner import TICK_S, Decisions, Planner, PlannerSignal, PlannerState
+from game.embos.planner import Planner
+from game.embos.planner_state import TICK_S, Decisions, PlannerSignal, PlannerState
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 
 __all__ = [

@@ -10,7 +10,8 @@ import numpy as np
 from game.core.emotion_space import EMOTIONS
 
 if TYPE_CHECKING:
-    from game.embos.planner import Factors, Planner, PlannerSignal, PlannerState
+    from game.embos.planner import Planner
+    from game.embos.planner_state import Factors, PlannerSignal, PlannerState
 
 __all__ = ["Candidate", "explain"]
 
@@ -58,7 +59,7 @@ def explain(
                         unit=unit,
                         name=planner.library.units[unit].name,
                         continuity=float(factors.continuity[0, at, place]),
-                        linkage=float(factors.linkage[0, at, place]),
+                        linkage=_link(factors, at, place),
                         time=float(factors.time[0, at, place]),
                         state=float(factors.state[0, at, place]),
                         score=float(factors.score[0, at, place]),
@@ -69,6 +70,11 @@ def explain(
                 )
         result.append(sorted(candidates, key=lambda c: (not c.chosen, -c.score)))
     return result
+
+
+def _link(factors: Factors, at: int, place: int) -> float:
+    link = factors.linkage[at]
+    return 1.0 if link is None else float(link[0, place])
 
 
 def _name(planner: Planner, slot: int) -> str:
@@ -91,7 +97,7 @@ def _reason(
     waits_s = float(state.wait_s[character, slot]) - time_s
     waiting = factors.time[0, at, place] == t.minimum[slot]
     if slot != chosen:
-        if factors.linkage[0, at, place] == 0.0:
+        if _link(factors, at, place) == 0.0:
             return f"blocked by linkage with {_blockers(planner, factors, at, slot)}"
         if slot in t.gesture_slots and factors.state[0, at, place] == 0.0:
             return "its word is not being said, or the emotion never showed it"
@@ -114,7 +120,7 @@ def _reason(
     if running >= t.slots:
         return "first choice: " + _because(planner, factors, at, place)
     before = _name(planner, running)
-    if factors.linkage[0, at, running - at * t.width] == 0.0:
+    if _link(factors, at, running - at * t.width) == 0.0:
         blockers = _blockers(planner, factors, at, running)
         return f"{before} is blocked by {blockers}; {_because(planner, factors, at, place)}"
     if t.rest[running]:

@@ -9,12 +9,18 @@ from numpy.typing import NDArray
 
 from game.embos.config import PlannerConfig
 from game.embos.library import UnitLibrary
-from game.embos.scores import continuity, difference, presence, rank_share
+from game.embos.scores import continuity
 
-__all__ = ["PlannerTables", "build_tables"]
+__all__ = ["CHUNK", "PlannerTables", "build_tables"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+
+CHUNK = 64
+"""Characters computed together: enough to hide the calls, few enough for the cache."""
+
+_STEP = 2.0**-40
+"""Differences d closer than this are equal in rank (as in scores.ranks, 1e-12)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,10 +29,10 @@ class PlannerTables:
 
     unit: (P,) index into library.units, −1 where empty. real: (P,) bool, a unit that is not rest. rest: (P,) bool.
     follow: (P + 1, M) ω_c from a slot to its layer's slots; row P is "nothing ran yet". blocks: (P + 1, L, M) ω_l
-    of every slot below a running slot. intensity, exists, duration_s, waiting_s: (P, 7); cv: (P,).
-    constant_state: (P,) φ_state of rest slots, 0 elsewhere, −1 in empty ones. gesture: (P,) column of the word
-    factor, −1 elsewhere. count: (L, 1) units that take part in the ranking. least_s: (L,).
-    minimum: (P,) φ_time while waiting.
+    of every slot below a running slot. intensity, exists, duration_s, waiting_s: (P, 7); *_t: transposed; cv: (P,).
+    constant_state: (P,) φ_state of rest slots, 0 elsewhere, −1 in empty ones. gesture_slots: (G,) consecutive
+    slots of the gestures proper, gestures: the same as a slice. count: (L, 1) units that take part in the ranking;
+    not_real, place: (P,) for it. minimum: (P,) φ_time while waiting. least_s: (L,). initial: (L,) slots.
     """
 
     layers: tuple[str, ...]
@@ -38,11 +44,16 @@ class PlannerTables:
     blocks: Floats
     intensity: Floats
     exists: Floats
+    intensity_t: Floats
+    exists_t: Floats
+    not_real: NDArray[np.int64]
+    place: NDArray[np.int64]
     duration_s: Floats
     waiting_s: Floats
     cv: Floats
     constant_state: Floats
     gesture_slots: Ints
+    gestures: slice
     gesture_layer: int
     count: Floats
     least_s: Floats
@@ -62,16 +73,46 @@ class PlannerTables:
     def phi_state(self, emotion: Floats) -> Floats:
         """(R, 7) -> (R, P): φ_state without words; rest slots at their threshold, empty slots −1.
 
-        Units never shown in what is felt are held back by their presence (see scores.presence).
+        scores.phi_state layer by layer, times the presence (scores.presence) of units in mixed emotions.
         """
-        rows = len(emotion)
-        d = difference(emotion, self.intensity)
-        d[:, ~self.real] = np.inf
-        d = d.reshape(rows, len(self.layers), self.width)
-        phi = rank_share(d, self.count).reshape(rows, self.slots)
+        pieces = [self._phi_state(emotion[i : i + CHUNK]) for i in range(0, len(emotion), CHUNK)]
+        return pieces[0] if len(pieces) == 1 else np.concatenate(pieces)
+
+    def _phi_state(self, emotion: Floats) -> Floats:
+        felt = emotion[:, :, None]
+        total = np.maximum(emotion.sum(axis=1), 1e-12)[:, None]
+        # Axes in this order, (R, 7, P), keep the long one innermost. Sums run over the seven in a fixed order, so
+        # that a character gets the same bits alone and in a crowd (a matrix product would not promise that).
+        apart = felt - self.intensity_t
+        np.abs(apart, out=apart)
+        apart *= felt
+        d = apart.sum(axis=1)
+        d /= total
+        share = rank_share_packed(d, self)
         if self.presence > 0.0:
-            phi *= (1.0 - self.presence) + self.presence * presence(emotion, self.exists)
-        return np.where(self.real, phi, self.constant_state)
+            shown = (felt * self.exists_t).sum(axis=1)
+            shown *= self.presence / total
+            shown += 1.0 - self.presence
+            share *= shown
+        return np.where(self.real, share, self.constant_state)
+
+
+def rank_share_packed(d: Floats, tables: PlannerTables) -> Floats:
+    """scores.rank_share per layer for (R, P), empty and rest slots last: one integer sort instead of an argsort."""
+    rows, width = len(d), tables.width
+    level = (np.minimum(d, 1.0) * (1.0 / _STEP)).astype(np.int64)
+    level += tables.not_real  # beyond every real unit
+    packed = ((level << 10) | tables.place).reshape(rows, -1, width)
+    packed.sort(axis=-1)
+    level = packed >> 10
+    rank = np.zeros(packed.shape, dtype=np.intp)
+    np.multiply(level[..., 1:] > level[..., :-1], np.arange(1, width), out=rank[..., 1:])
+    np.maximum.accumulate(rank, axis=-1, out=rank)
+    share = np.empty(packed.shape)
+    np.put_along_axis(share, packed & 1023, 1.0 - rank / tables.count, axis=-1)
+    near = 1.0 - d
+    near *= share.reshape(rows, -1)
+    return near
 
 
 def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
@@ -101,6 +142,9 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         dtype=np.intp,
     )
     real = used & ~rest
+    gestures = np.flatnonzero(real & np.isin(unit, library.gestures))
+    intensity = np.where(used[:, None], library.intensity[unit], 0.0)
+    exists = np.where(used[:, None], library.exists[unit], False).astype(np.float64)
     tables = PlannerTables(
         layers=config.layers,
         width=width,
@@ -109,13 +153,18 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         rest=rest,
         follow=follow,
         blocks=blocks.reshape(slots + 1, layers, width),
-        intensity=np.where(used[:, None], library.intensity[unit], 0.0),
-        exists=np.where(used[:, None], library.exists[unit], False).astype(np.float64),
+        intensity=intensity,
+        exists=exists,
+        intensity_t=np.ascontiguousarray(intensity.T),
+        exists_t=np.ascontiguousarray(exists.T),
+        not_real=np.where(real, 0, int(4.0 / _STEP)).astype(np.int64),
+        place=np.tile(np.arange(width, dtype=np.int64), layers),
         duration_s=np.where(used[:, None], library.duration_s[unit], 0.0),
         waiting_s=np.where(used[:, None], library.waiting_s[unit], 0.0),
         cv=np.where(used, library.duration_cv[unit], 0.0),
         constant_state=np.where(rest, threshold, np.where(used, 0.0, -1.0)),
-        gesture_slots=np.flatnonzero(real & np.isin(unit, library.gestures)),
+        gesture_slots=gestures,
+        gestures=slice(int(gestures[0]), int(gestures[-1]) + 1) if len(gestures) else slice(0, 0),
         gesture_layer=config.layers.index("gesture"),
         count=real.reshape(layers, width).sum(axis=1, keepdims=True).clip(1).astype(np.float64),
         least_s=np.array([config.least_s.get(layer, 0.0) for layer in config.layers]),

@@ -1,0 +1,91 @@
+"""What goes into the planner and what comes out: signal, state, decisions, factors. All frozen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TICK_S", "Decisions", "Factors", "PlannerSignal", "PlannerState"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+TICK_S = 1.0 / 30.0
+"""The simulation's step."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlannerSignal:
+    """What a tick brings. emotion: (n, 7) felt; words: (n, G) word factor per gesture unit, 1 at its word's moment,
+    else 0 (columns as library.gestures); time_s: the moment of this tick."""
+
+    emotion: Floats
+    words: Floats
+    time_s: float
+
+
+@dataclass(frozen=True, eq=False)
+class Decisions:
+    """One unit per layer, columns in the order of the planner's layers.
+
+    unit: (n, L) index into library.units. started: (n, L) bool, True in the tick a unit starts (again).
+    start_time_s, duration_s: (n, L); a rest unit has duration 0. emotion_weights: (n, L, 7) normalised weights of
+    eq. 5 at the start, all 0 for rest. variant_pick: (n, L) in [0, 1). stroke_s: (n, L) seconds from the start to
+    the stroke of the mixed variants (gestures), 0 elsewhere.
+    """
+
+    unit: Ints
+    started: Bools
+    start_time_s: Floats
+    duration_s: Floats
+    emotion_weights: Floats
+    variant_pick: Floats
+    stroke_s: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class PlannerState:
+    """Where n characters stand; never changed in place, so an old state can be kept, saved or compared.
+
+    key: (n,) uint64 of each character's draws. running: (n, L) slots. end_s: (n, L) end of the running unit's
+    duration, −inf for rest. hold_s: (n, L) until when it may not be given up. wait_s: (n, P) end of each slot's
+    waiting time, −inf if it never ran. starts: (n, L) how often the layer has started a unit. emotion: (n, 7) and
+    phi_state: (n, P) as last computed. words: (n, G) of the last tick. next_s: (n,) when the decision may change
+    by time alone. decisions: the last tick's.
+    """
+
+    key: NDArray[np.uint64]
+    running: Ints
+    end_s: Floats
+    hold_s: Floats
+    wait_s: Floats
+    starts: NDArray[np.int64]
+    emotion: Floats
+    phi_state: Floats
+    words: Floats
+    next_s: Floats
+    soonest_s: float
+    decisions: Decisions
+
+    def __len__(self) -> int:
+        return len(self.key)
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """Eq. 1 for R characters. continuity, time, state, score: (R, L, M); linkage: per layer (R, M), or None where
+    no layer is above. chosen: (R, L) slots. within: (R, L) the running unit is inside its duration. again: (R, L)
+    the running unit won after its waiting time. next_s: (R,) when the decision may change by time alone."""
+
+    continuity: Floats
+    time: Floats
+    state: Floats
+    linkage: list[Floats | None]
+    score: Floats
+    chosen: Ints
+    within: Bools
+    again: Bools
+    next_s: Floats
