@@ -162,7 +162,8 @@ def annotation_yaml(annotation: Annotation) -> str:
         if span.stroke_s is not None:
             text += f", stroke_s: {span.stroke_s:.3f}"
         if span.words is not None:
-            text += f", words: '{span.words}'"
+            quoted = span.words.replace("'", "''")  # YAML's way to write an apostrophe in single quotes
+            text += f", words: '{quoted}'"
         lines.append(f"  - {{{text}}}")
     return "\n".join(lines) + "\n"
 
