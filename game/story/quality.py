@@ -57,19 +57,24 @@ def _outcomes_end(script: Script, findings: Findings) -> None:
     for kind, first in script.outcomes.items():
         if not OUTCOMES[kind]:
             continue
-        queue, done = [first], set()
+        # (node, whether it was called: a called node goes `back` to its caller, which goes on)
+        queue: list[tuple[str, bool]] = [(first, False)]
+        done: set[tuple[str, bool]] = set()
         while queue:
-            name = queue.pop()
-            if name in done:
+            name, called = queue.pop()
+            if (name, called) in done:
                 continue
-            done.add(name)
+            done.add((name, called))
             node = script.nodes[name]
-            if node.waits or any(branch.target in {BACK, HOME} for branch in node.to):
+            lost = {HOME} if called else {HOME, BACK}
+            if node.waits or any(branch.target in lost for branch in node.to):
                 findings.add(
                     "W_ENDING_FALLS_BACK", node.where, f"{kind} ends the talk, but {name!r} leads back into it"
                 )
             elif node.end is None:
-                queue.extend(plain_targets(node))
+                queue.extend((branch.target, called) for branch in node.to if branch.target in script.nodes)
+                if node.call:
+                    queue.append((node.call, True))
 
 
 def _hubs(script: Script, findings: Findings) -> None:
@@ -112,18 +117,26 @@ def _hubs(script: Script, findings: Findings) -> None:
 
 
 def _reactions(script: Script, findings: Findings) -> None:
-    """A node that speaks by how the line landed needs words for each way, said or hidden."""
-    for node in script.nodes.values():
-        ways = list(lines_by_way(node.says))
-        if not any(way for way, _, _ in ways) or any(way is None and not bound for way, bound, _ in ways):
+    """An answer that depends on how the line landed needs words for each way, said or hidden."""
+    for first in dict.fromkeys(branch.target for choice in script.all_choices() for branch in choice.to):
+        ways: list[tuple[str | None, bool]] = []
+        queue, done = [first], set()
+        while queue:
+            name = queue.pop()
+            if name in done or name not in script.nodes or script.nodes[name].waits:
+                continue
+            done.add(name)
+            ways.extend((way, bound) for way, bound, _ in lines_by_way(script.nodes[name].says))
+            queue.extend(plain_targets(script.nodes[name]))
+        if not any(way for way, _ in ways) or (None, False) in ways:
             continue
-        missing = [way for way in WHEN if not any(found == way and not bound for found, bound, _ in ways)]
+        missing = [way for way in WHEN if (way, False) not in ways]
         if missing:
             findings.add(
                 "W_SILENT_REACTION",
-                node.where,
-                f"{node.id!r} has nothing to say when: {', '.join(missing)}",
-                "add a line without a condition for each",
+                script.nodes[first].where,
+                f"{first!r} has nothing to say when: {', '.join(missing)}",
+                "a line for each, without a condition, here or where it leads",
             )
 
 
