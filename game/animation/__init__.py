@@ -1,1 +1,27 @@
+"""The body in motion: from the planner's decisions to one pose per character and to the matrices that skin a mesh."""
 
+from game.animation.liveliness import GAZE_AWAY, GAZE_CUSTOMER, GAZE_GOODS, LifeConfig
+from game.animation.performer import MODES, Mode, Performer, PerformerState, PerformSignal
+from game.animation.pose import Pose, interpolate_pose, joint_accelerations, largest_joint_acceleration
+from game.animation.skinning import Rig
+from game.animation.springbones import SpringChain, SpringCollider, SpringState
+
+__all__ = [
+    "GAZE_AWAY",
+    "GAZE_CUSTOMER",
+    "GAZE_GOODS",
+    "MODES",
+    "LifeConfig",
+    "Mode",
+    "PerformSignal",
+    "Performer",
+    "PerformerState",
+    "Pose",
+    "Rig",
+    "SpringChain",
+    "SpringCollider",
+    "SpringState",
+    "interpolate_pose",
+    "joint_accelerations",
+    "largest_joint_acceleration",
+]

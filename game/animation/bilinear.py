@@ -1,0 +1,106 @@
+"""Quaternion products and matrices as constant bilinear maps: two array calls each, for one character or many.
+
+Written for frames: float32, batch axes lead, no temporaries on Python's side. game.core.quaternion has the
+same operations for everything that is not in the inner loop.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["affine", "conjugate", "from_matrix", "multiply", "normalize", "rotation_matrix"]
+
+Floats = NDArray[np.floating[Any]]
+
+
+def _left_table() -> Floats:
+    """(4, 16): a @ table is the 4×4 matrix L(a) with L(a) b = a·b (x, y, z, w order)."""
+    table = np.zeros((4, 4, 4), dtype=np.float32)
+    x, y, z, w = range(4)
+    for out, left, right, sign in (
+        (x, w, x, 1), (x, x, w, 1), (x, y, z, 1), (x, z, y, -1),
+        (y, w, y, 1), (y, x, z, -1), (y, y, w, 1), (y, z, x, 1),
+        (z, w, z, 1), (z, x, y, 1), (z, y, x, -1), (z, z, w, 1),
+        (w, w, w, 1), (w, x, x, -1), (w, y, y, -1), (w, z, z, -1),
+    ):  # fmt: skip
+        table[left, out, right] = sign
+    return table.reshape(4, 16)
+
+
+def _matrix_table() -> Floats:
+    """(16, 16): outer(q, q) @ table is the 4×4 affine matrix of a unit quaternion, without translation."""
+    table = np.zeros((4, 4, 4, 4), dtype=np.float32)
+    x, y, z, w = range(4)
+    for i, (j, k) in enumerate(((y, z), (z, x), (x, y))):
+        # Homogeneous form: the diagonal is w² + i² − j² − k², so no constant term is needed.
+        table[w, w, i, i] = table[i, i, i, i] = 1
+        table[j, j, i, i] = table[k, k, i, i] = -1
+        table[i, j, i, j] = table[i, j, j, i] = 2
+        table[w, k, i, j] = -2
+        table[w, k, j, i] = 2
+    for i in range(4):
+        table[i, i, 3, 3] = 1
+    return table.reshape(16, 16)
+
+
+def _candidates_table() -> tuple[Floats, Floats]:
+    """(9, 16) and (16,): a rotation matrix @ table + constant is outer(q, q)·4, whose rows are all ±q scaled."""
+    table = np.zeros((3, 3, 4, 4), dtype=np.float32)
+    constant = np.eye(4, dtype=np.float32)
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        table[i, i, i, i] = 1
+        table[j, j, i, i] = table[k, k, i, i] = -1
+        table[i, i, 3, 3] = 1
+        table[i, j, i, j] = table[j, i, i, j] = table[i, j, j, i] = table[j, i, j, i] = 1
+        table[k, j, i, 3] = table[k, j, 3, i] = 1
+        table[j, k, i, 3] = table[j, k, 3, i] = -1
+    return table.reshape(9, 16), constant.reshape(16)
+
+
+_LEFT = _left_table()
+_MATRIX = _matrix_table()
+_CANDIDATES, _CANDIDATES_AT_ZERO = _candidates_table()
+_SUM = np.ones((4, 4), dtype=np.float32)
+_CONJUGATE = np.array([-1, -1, -1, 1], dtype=np.float32)
+for _table in (_LEFT, _MATRIX, _CANDIDATES, _CANDIDATES_AT_ZERO, _SUM, _CONJUGATE):
+    _table.setflags(write=False)
+
+
+def multiply(a: Floats, b: Floats) -> Floats:
+    """a·b (b first), (..., 4) each."""
+    left = (a @ _LEFT).reshape(*a.shape[:-1], 4, 4)
+    return np.asarray((left @ b[..., None])[..., 0])
+
+
+def conjugate(q: Floats) -> Floats:
+    """The inverse of a unit quaternion."""
+    return q * _CONJUGATE
+
+
+def normalize(q: Floats) -> Floats:
+    """(..., 4) -> unit length; q must not be zero."""
+    return np.asarray(q / np.sqrt((q * q) @ _SUM))
+
+
+def affine(q: Floats) -> Floats:
+    """Unit quaternions (..., 4) -> (..., 4, 4) affine matrices with zero translation."""
+    outer = q[..., :, None] * q[..., None, :]
+    return np.asarray((outer.reshape(*q.shape[:-1], 16) @ _MATRIX).reshape(*q.shape[:-1], 4, 4))
+
+
+def rotation_matrix(q: Floats) -> Floats:
+    """Unit quaternions (..., 4) -> (..., 3, 3), a view of affine(q)."""
+    return affine(q)[..., :3, :3]
+
+
+def from_matrix(matrix: Floats) -> Floats:
+    """Rotation matrices (..., 3, 3) -> unit quaternions (..., 4); the sign is arbitrary."""
+    shape = matrix.shape[:-2]
+    rows = (matrix.reshape(-1, 9) @ _CANDIDATES + _CANDIDATES_AT_ZERO).reshape(-1, 4, 4)
+    # Any row of outer(q, q) is q up to scale; the one with the largest diagonal is the best conditioned.
+    best = rows.reshape(-1, 16)[:, ::5].argmax(axis=1)
+    return normalize(rows[np.arange(len(rows)), best]).reshape(*shape, 4)

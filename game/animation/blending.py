@@ -1,0 +1,225 @@
+"""Layers into one row, and transitions that never pop (SPEC 6).
+
+The posture moves the whole body; a gesture and a mannerism replace the parts they own and add a trace to torso and
+head. Whenever the source of a part changes, the difference between what was shown and what is wanted is kept and
+dies away along a minimum-jerk curve (inertialisation after Bollo, GDC 2018): place and velocity stay continuous,
+and the acceleration starts and ends at 0. The curve is closed-form, so the frame rate does not matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.animation import bilinear as bl
+from game.animation import channels as ch
+from game.animation.motion_bank import MotionBank
+from game.animation.playback import Playback
+
+__all__ = ["Blend", "advance_blend", "compose", "start_blend", "switch"]
+
+Floats = NDArray[np.floating[Any]]
+Bools = NDArray[np.bool_]
+
+SHORTEST_S, LONGEST_S = 0.2, 1.4
+"""Limits of a transition's length."""
+GROWTH = (0.6, 0.7)
+"""A transition lasts base·(a + b·√(turn / 90°)): far moves take longer (Fitts)."""
+STROKE_SHARE = 0.85
+"""A gesture's preparation must be free of the past before its stroke: at most this share of the time up to it."""
+OVERSHOOT = 0.6
+"""Joints turning fast when they are taken over get a shorter transition: span·speed stays below this (half radians)."""
+
+# Hermite basis on [0, 1] with vanishing end and accelerations: value 1 → 0 and slope 1 → 0, and their slopes.
+_BASIS = np.array(
+    [
+        [1.0, 0.0, 0.0, 1.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, -30.0, -18.0],
+        [-10.0, -6.0, 60.0, 32.0],
+        [15.0, 8.0, -30.0, -15.0],
+        [-6.0, -3.0, 0.0, 0.0],
+    ],
+    dtype=np.float32,
+)
+_POWERS = np.arange(6, dtype=np.float32)
+_BASIS.setflags(write=False)
+_POWERS.setflags(write=False)
+
+_TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
+_TOUCHED.setflags(write=False)
+_PART_JOINTS = tuple(np.flatnonzero(p == ch.PART_OF_JOINT) for p in range(len(ch.PARTS)))
+_ARMS = (ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm"))
+
+
+@dataclass(frozen=True, eq=False)
+class Blend:
+    """n characters. gate: (n, L, CHANNELS) share of each layer. owned: (n, L, PARTS) what each layer's unit owns.
+    frame: (n, 2) contact frame of the hands, contact: (n, 2) whether it is declared. offset, offset_speed:
+    (n, CHANNELS) at the last switch, the latter times the transition's span. age_s, span_s: (n, PARTS). row, speed:
+    (n, CHANNELS) shown at the last tick. known: (n,) False before the first tick."""
+
+    gate: Floats
+    owned: Bools
+    frame: NDArray[np.intp]
+    contact: Floats
+    offset: Floats
+    offset_speed: Floats
+    age_s: Floats
+    span_s: Floats
+    row: Floats
+    speed: Floats
+    known: Bools
+
+
+def start_blend(n: int, layers: int) -> Blend:
+    """Before the first tick: whatever comes is taken as it is."""
+    parts = len(ch.PARTS)
+    zero = np.zeros((n, ch.CHANNELS), dtype=np.float32)
+    return Blend(
+        gate=np.zeros((n, layers, ch.CHANNELS), dtype=np.float32),
+        owned=np.zeros((n, layers, parts), dtype=bool),
+        frame=np.zeros((n, 2), dtype=np.intp),
+        contact=np.zeros((n, 2), dtype=np.float32),
+        offset=zero,
+        offset_speed=zero,
+        age_s=np.ones((n, parts), dtype=np.float32),
+        span_s=np.ones((n, parts), dtype=np.float32),
+        row=zero,
+        speed=zero,
+        known=np.zeros(n, dtype=bool),
+    )
+
+
+def compose(value: Floats, gate: Floats) -> tuple[Floats, Floats]:
+    """Layer values (n, L, 2, CHANNELS) and gate -> the wanted row and its change per second, (n, CHANNELS) each."""
+    both = (value * gate[:, :, None]).sum(axis=1)
+    return both[:, 0], both[:, 1]
+
+
+def switch(
+    bank: MotionBank,
+    state: Blend,
+    playback: Playback,
+    events: Bools,
+    value: Floats,
+    base_s: Floats,
+    contact_frames: Floats,
+    posture_layer: int,
+    dt_s: float,
+) -> Blend:
+    """Take up new sources. events: (n, L) layers whose source jumped; base_s: (n,) length of a middling transition;
+    contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
+    layers = events.shape[1]
+    owned = bank.owned[playback.unit] & playback.active[:, :, None]
+    touched = owned | state.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
+    changed = (touched & events[:, :, None]).any(axis=1)
+    gate, frame, contact = _gates(bank, playback, owned, posture_layer)
+    goal, goal_speed = compose(value, gate)
+    row, speed = _in_frames(state, frame, contact_frames)
+    row = row + speed * np.float32(dt_s)
+    row, speed = _same_side(row, speed, goal)
+    offset, offset_speed = row - goal, speed - goal_speed
+    span = _spans(offset, offset_speed, base_s)
+    span = np.minimum(span, _until_stroke(bank, playback, owned))
+    fresh = changed & state.known[:, None]
+    span = np.where(fresh, span, state.span_s)
+    per_channel = fresh[:, ch.PART_OF_CHANNEL]
+    span_of_channel = span[:, ch.PART_OF_CHANNEL]
+    return replace(
+        state,
+        gate=gate,
+        owned=owned,
+        frame=frame,
+        contact=contact,
+        offset=np.where(per_channel, offset, state.offset),
+        offset_speed=np.where(per_channel, offset_speed * span_of_channel, state.offset_speed),
+        age_s=np.where(fresh, np.float32(0.0), state.age_s),
+        span_s=span,
+    )
+
+
+def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
+    """The row now shown, the transitions' remains included."""
+    row, speed = compose(value, state.gate)
+    share = state.age_s / state.span_s
+    if share.min() < 1.0:
+        basis = (np.minimum(share, 1.0)[..., None] ** _POWERS) @ _BASIS
+        basis[..., 2:] /= state.span_s[..., None]
+        # Past its end a transition's velocity terms are exactly 0 already, by the basis.
+        a, b, da, db = basis.transpose(2, 0, 1).take(ch.PART_OF_CHANNEL, axis=2)
+        row = row + state.offset * a + state.offset_speed * b
+        speed = speed + state.offset * da + state.offset_speed * db
+    return replace(state, row=row, speed=speed, age_s=state.age_s + np.float32(dt_s), known=np.ones_like(state.known))
+
+
+def _gates(
+    bank: MotionBank, playback: Playback, owned: Bools, posture_layer: int
+) -> tuple[Floats, NDArray[np.intp], Floats]:
+    """Layer shares per channel, contact frames of the hands and whether they are declared contacts."""
+    n, layers, parts = owned.shape
+    free = np.ones((n, parts), dtype=bool)
+    gate = np.zeros((n, layers, parts), dtype=np.float32)
+    unit = np.zeros((n, 2), dtype=np.intp)
+    for layer in [k for k in range(layers) if k != posture_layer] + [posture_layer]:
+        gate[:, layer] = free & (playback.active[:, layer, None] | (layer == posture_layer))
+        taken = free & owned[:, layer]
+        unit = np.where(taken[:, _ARMS], playback.unit[:, layer, None], unit)
+        free = free & ~taken
+    hand = np.arange(2)
+    return gate[:, :, ch.PART_OF_CHANNEL], bank.frame[unit, hand], bank.contact[unit, hand].astype(np.float32)
+
+
+def _in_frames(state: Blend, frame: NDArray[np.intp], contact_frames: Floats) -> tuple[Floats, Floats]:
+    """The last row and speed with the hands expressed in their new contact frames."""
+    row, speed = state.row, state.speed
+    if np.array_equal(frame, state.frame):
+        return row, speed
+    who = np.arange(len(frame))[:, None]
+    old, new = contact_frames[who, state.frame], contact_frames[who, frame]
+    back = new[..., :3, :3].swapaxes(-1, -2)
+    turn = back @ old[..., :3, :3]
+    shift = back @ (old[..., :3, 3:] - new[..., :3, 3:])
+    turn_quat = bl.from_matrix(turn)
+    row, speed = row.copy(), speed.copy()
+    for array, moved in ((row, shift[..., 0]), (speed, np.float32(0.0))):
+        wrist = array[:, ch.WRIST].reshape(-1, 2, 3)
+        palm = array[:, ch.PALM].reshape(-1, 2, 4)
+        array[:, ch.WRIST] = ((turn @ wrist[..., None])[..., 0] + moved).reshape(-1, 6)
+        array[:, ch.PALM] = bl.multiply(turn_quat, palm).reshape(-1, 8)
+    return row, speed
+
+
+def _same_side(row: Floats, speed: Floats, goal: Floats) -> tuple[Floats, Floats]:
+    """Quaternions of row turned to the goal's hemisphere (the same rotations)."""
+    row, speed = row.copy(), speed.copy()
+    for part in (ch.ROTATION, ch.PALM):
+        mine = row[:, part].reshape(len(row), -1, 4)
+        wanted = goal[:, part].reshape(len(row), -1, 4)
+        sign = np.where((mine * wanted).sum(-1, keepdims=True) < 0.0, np.float32(-1.0), np.float32(1.0))
+        row[:, part] = (mine * sign).reshape(len(row), -1)
+        speed[:, part] = (speed[:, part].reshape(mine.shape) * sign).reshape(len(row), -1)
+    return row, speed
+
+
+def _spans(offset: Floats, offset_speed: Floats, base_s: Floats) -> Floats:
+    """(n, PARTS) seconds a transition takes: longer for far moves, shorter out of fast ones."""
+    n = len(offset)
+    turn = 2.0 * np.linalg.norm(offset[:, ch.ROTATION].reshape(n, ch.JOINTS, 4), axis=-1)
+    pace = np.linalg.norm(offset_speed[:, ch.ROTATION].reshape(n, ch.JOINTS, 4), axis=-1)
+    far = np.stack([turn[:, joints].max(axis=1) for joints in _PART_JOINTS], axis=1)
+    fast = np.stack([pace[:, joints].max(axis=1) for joints in _PART_JOINTS], axis=1)
+    span = base_s[:, None] * (GROWTH[0] + GROWTH[1] * np.sqrt(far / (0.5 * np.pi)))
+    span = np.clip(np.minimum(span, OVERSHOOT / np.maximum(fast, 1e-3)), SHORTEST_S, LONGEST_S)
+    return np.asarray(span, dtype=np.float32)
+
+
+def _until_stroke(bank: MotionBank, playback: Playback, owned: Bools) -> Floats:
+    """(n, PARTS) the longest a transition may take where a gesture is on its way to its stroke."""
+    left = STROKE_SHARE * (playback.before_s - playback.elapsed_s)
+    bound = owned & (left > 0.0)[:, :, None]
+    limit = np.where(bound, np.maximum(left, SHORTEST_S)[:, :, None], np.inf)
+    return np.asarray(limit.min(axis=1), dtype=np.float32)

@@ -1,0 +1,112 @@
+"""Hands stay out of the body and the table, softly: how far a wrist has to be pushed so that nothing is inside.
+
+The body is a handful of ellipsoids on chest, spine, hips and head, the table a slab (MOTION.md, contacts). Depth
+grows smoothly from before the touch and all contacts of a hand are weighed together, so the push has no jumps.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
+
+__all__ = ["BODY", "BODY_JOINTS", "POINT_RADII", "TABLE_BACK_Z_M", "body_distance", "body_frames", "push_out"]
+
+Floats = NDArray[np.floating[Any]]
+
+_REST = {name: REFERENCE.rest_model[i, :3, 3] for i, name in enumerate(REFERENCE.names)}
+_HEAD = _REST["head"] + HEAD_CENTRE_OFFSET
+
+BODY: tuple[tuple[str, tuple[float, float, float], tuple[float, float, float]], ...] = (
+    ("chest", (0.0, 0.815, 0.0), (0.145, 0.145, 0.112)),
+    ("chest", (0.0, 0.902, -0.008), (0.130, 0.060, 0.060)),
+    ("spine", (0.0, 0.680, 0.0), (0.135, 0.140, 0.112)),
+    ("hips", (0.0, 0.550, 0.0), (0.175, 0.120, 0.145)),
+    ("head", (0.0, _HEAD[1] - 0.03, _HEAD[2] + 0.01), (0.150, 0.155, 0.150)),
+    ("head", (0.0, _HEAD[1] + 0.02, _HEAD[2] - 0.015), (0.186, 0.178, 0.180)),
+)
+"""Joint, centre in the rest pose, radii: metres."""
+
+POINT_RADII = np.array([0.027, 0.024, 0.012, 0.011, 0.011, 0.011, 0.036], dtype=np.float32)
+"""Wrist, palm, middle knuckle, tips of middle, index and little finger, middle of the forearm: metres."""
+TOLERANCE_M = np.array([0.006, 0.006, 0.006, 0.006, 0.006, 0.006, 0.020], dtype=np.float32)
+"""How deep each may press into the (soft) body."""
+TABLE_BACK_Z_M = 0.155
+TABLE_CLEARANCE_M = 0.004
+SOFTNESS_M = 0.006
+"""The push begins this far before the touch."""
+DEEPEST_M = 0.12
+"""Points further inside than this came from below the table: they are left to the clip."""
+
+BODY_JOINTS = tuple(dict.fromkeys(joint for joint, _, _ in BODY))
+_OWNER = np.array([BODY_JOINTS.index(joint) for joint, _, _ in BODY])
+_CENTRE = np.array([np.subtract(c, _REST[j]) for j, c, _ in BODY], dtype=np.float32)
+_INVERSE = np.array([np.divide(1.0, r) for _, _, r in BODY], dtype=np.float32)
+for _array in (POINT_RADII, TOLERANCE_M, _OWNER, _CENTRE, _INVERSE):
+    _array.setflags(write=False)
+
+
+def body_frames(joints: dict[str, Floats]) -> Floats:
+    """(n, 4, 4) matrices of chest, spine, hips and head -> (n, 6, 3, 4) maps into each ellipsoid's unit sphere."""
+    frames = np.stack([joints[name] for name in BODY_JOINTS], axis=1)[:, _OWNER]
+    maps = np.empty((len(frames), len(BODY), 3, 4), dtype=np.float32)
+    turn = frames[..., :3, :3].swapaxes(-1, -2)
+    maps[..., :3] = turn
+    maps[..., 3] = -(turn @ frames[..., :3, 3:])[..., 0] - _CENTRE
+    maps *= _INVERSE[:, :, None]
+    return maps
+
+
+def body_distance(maps: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """Signed distance (n, 6, P) of points (n, P, 3) from each ellipsoid, metres, and its unit gradient (n, 6, 3, P)."""
+    at = maps[..., :3] @ points.swapaxes(-1, -2)[:, None] + maps[..., 3:]
+    squeezed = at * _INVERSE[:, :, None]
+    norm = np.sqrt((at * at).sum(axis=2) + np.float32(1e-12))
+    slope = np.sqrt((squeezed * squeezed).sum(axis=2) + np.float32(1e-12))
+    # Quílez' estimate for an ellipsoid; exact on the surface.
+    distance = norm * (norm - 1.0) / slope
+    away = squeezed / slope[:, :, None]
+    turn = (maps[..., :3] / _INVERSE[:, :, None]).swapaxes(-1, -2)
+    return distance, turn @ away
+
+
+def _soft(depth: Floats) -> Floats:
+    """Smooth max(depth, 0): starts SOFTNESS_M before the touch."""
+    s = np.float32(SOFTNESS_M)
+    ramp = np.clip(depth + s, 0.0, 2.0 * s)
+    return np.asarray(ramp * ramp / (4.0 * s) + np.maximum(depth - s, 0.0))
+
+
+def push_out(maps: Floats, points: Floats) -> Floats:
+    """points: (n, 2, 7, 3) of both hands in model space -> push (n, 2, 3), metres; 0 where all is clear."""
+    n = len(points)
+    distance, away = body_distance(maps, points.reshape(n, 14, 3))
+    radius = np.concatenate([POINT_RADII, POINT_RADII])
+    depth = _soft((radius - np.concatenate([TOLERANCE_M, TOLERANCE_M])) - distance)
+    cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
+    # The deepest contact leads, others join in as they come near: no switching.
+    weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
+    amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
+    push = amount.sum(axis=(1, 4)).swapaxes(-1, -2)
+    up, back = _table(points)
+    push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
+    push[..., 2] -= back
+    return np.asarray(push)
+
+
+def _table(points: Floats) -> tuple[Floats, Floats]:
+    """(n, 2) how far up, and how far back, the deepest point of each hand must go to be clear of the table."""
+    y, z = points[..., 1], points[..., 2]
+    radius = POINT_RADII + np.float32(TABLE_CLEARANCE_M)
+    up = np.clip(TABLE_TOP_M + radius - y, 0.0, None)
+    back = np.clip(z - (TABLE_BACK_Z_M - radius), 0.0, None)
+    inside = (up > 0.0) & (back > 0.0) & (z < TABLE_FRONT_Z_M + 0.04) & (up < DEEPEST_M)
+    # Near the edge the short way out is backward, elsewhere upward; between them the two share.
+    share = back * back / np.maximum(back * back + up * up, np.float32(1e-12))
+    return (
+        np.where(inside, up * share, 0.0).max(axis=-1),
+        np.where(inside, back * (1.0 - share), 0.0).max(axis=-1),
+    )

@@ -1,0 +1,279 @@
+"""From the planner's decisions to one pose per character: the stages of a tick, one after the other.
+
+decisions -> playback    rows of the running units, variants mixed (EMBOS eq. 5)
+          -> blending    layers into one row, transitions without pops (SPEC 6)
+          -> liveliness  breath, sway, gaze
+          -> limbs       hands where their contact wants them and out of the body, feet planted
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.animation import bilinear as bl
+from game.animation import blending, collision, figure, limbs, liveliness, playback
+from game.animation import channels as ch
+from game.animation.motion_bank import MotionBank, bake
+from game.animation.pose import Pose
+from game.core.emotion_space import EMOTIONS
+from game.core.humanoid import HEAD_CENTRE_OFFSET
+from game.core.springs import critical_spring
+from game.embos import LAYERS, Decisions, UnitLibrary
+
+__all__ = ["MODES", "Mode", "PerformSignal", "Performer", "PerformerState"]
+
+Floats = NDArray[np.floating[Any]]
+
+Mode = Literal["full", "gestures", "body", "face"]
+MODES: tuple[Mode, ...] = ("full", "gestures", "body", "face")
+"""What of the behaviour is shown. ``gestures``: posture and mannerism stand at neutral; ``body``: everything the
+body does (the face is another stage's); ``face``: the body stands still at neutral."""
+
+PUSH_HALF_LIFE_S = 0.045
+"""How softly a hand gives way to the body and the table."""
+
+_NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
+_NEUTRAL.setflags(write=False)
+_ADDED = liveliness.additive_slice()
+_EYES = HEAD_CENTRE_OFFSET.astype(np.float32)
+_PALM_POINT = np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.0]], dtype=np.float32)
+_SOFT = np.array([True, True, False, False])
+_FRAMES = [figure.WHERE[name] for name in ch.CONTACT_FRAMES[1:]]
+_HEAD, _CHEST = figure.WHERE["head"], figure.WHERE["chest"]
+_ENDS = figure.ENDS.reshape(-1)
+for _array in (_ADDED, _EYES, _PALM_POINT, _SOFT):
+    _array.setflags(write=False)
+
+
+@dataclass(frozen=True, eq=False)
+class PerformSignal:
+    """What a tick brings besides the decisions.
+
+    emotion: (n, 7) felt; gaze_target: (n, 3) model space, metres; speaking: (n,) 0 silent .. 1 speaking.
+    """
+
+    emotion: Floats
+    gaze_target: Floats
+    speaking: Floats
+    mode: Mode = "full"
+
+
+@dataclass(frozen=True, eq=False)
+class PerformerState:
+    """Where n characters stand; every tick makes a new one. contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES
+    as last shown; push, push_speed: (n, 2, 3) how far the hands are held off, metres."""
+
+    playback: playback.Playback
+    blend: blending.Blend
+    life: liveliness.Life
+    contact_frames: Floats
+    push: Floats
+    push_speed: Floats
+
+    def __len__(self) -> int:
+        return len(self.push)
+
+
+class Performer:
+    """Plays a library's units. Immutable; all that changes is in the state."""
+
+    def __init__(
+        self,
+        library: UnitLibrary,
+        layers: tuple[str, ...] = LAYERS,
+        life: liveliness.LifeConfig | None = None,
+        collide: bool = True,
+    ) -> None:
+        """layers: the planner's layer order; collide: keep hands out of body and table."""
+        self.library = library
+        self.layers = layers
+        self.life = life or liveliness.LifeConfig()
+        self.collide = collide
+        self.bank: MotionBank = bake(library, layers)
+        self._posture = layers.index("posture")
+        self._held_by_mode: dict[str, tuple[int, ...]] = {
+            "full": (),
+            "body": (),
+            "gestures": tuple(i for i, name in enumerate(layers) if name != "gesture"),
+            "face": tuple(range(len(layers))),
+        }
+
+    def start(self, n: int, seed: int = 0, first: int = 0) -> PerformerState:
+        """n characters before their first tick; character first + i moves the same in any company."""
+        frames = np.zeros((n, len(ch.CONTACT_FRAMES), 4, 4), dtype=np.float32)
+        frames[:] = np.eye(4, dtype=np.float32)
+        return PerformerState(
+            playback=playback.start(self.bank, n, len(self.layers)),
+            blend=blending.start_blend(n, len(self.layers)),
+            life=liveliness.start_life(n, seed, first),
+            contact_frames=frames,
+            push=np.zeros((n, 2, 3)),
+            push_speed=np.zeros((n, 2, 3)),
+        )
+
+    def advance(
+        self, state: PerformerState, decisions: Decisions, signal: PerformSignal, dt_s: float
+    ) -> tuple[PerformerState, Pose]:
+        """One tick of dt_s seconds (0 draws the present moment again)."""
+        emotion = _shares(signal)
+        play, blend = self._layers(state, decisions, signal, emotion, dt_s)
+        life, row, lungs, blink = self._enliven(state, play, blend, signal, emotion, dt_s)
+        rotation, root = self._normal(row)
+        joints, ends = figure.figure_matrices(rotation, root)
+        contact_frames = state.contact_frames.copy()
+        contact_frames[:, 1:] = joints.take(_FRAMES, axis=1)
+        hand = self._hands(row, blend, contact_frames)
+        push, push_speed = state.push, state.push_speed
+        if self.collide:
+            wanted = self._clearance(joints, ends, hand, row)
+            push, push_speed = critical_spring(push, push_speed, wanted, PUSH_HALF_LIFE_S, dt_s)
+            hand[:, :, :3, 3] += push
+        self._place_limbs(rotation, joints, ends, hand)
+        life, gaze = self._eyes(life, joints, signal, dt_s)
+        pose = Pose(rotation, root, gaze, blink, lungs)
+        return PerformerState(play, blend, life, contact_frames, push, push_speed), pose
+
+    def _layers(
+        self, state: PerformerState, decisions: Decisions, signal: PerformSignal, emotion: Floats, dt_s: float
+    ) -> tuple[playback.Playback, blending.Blend]:
+        """Clips run on, new units begin, all layers come together in one row."""
+        play = playback.advance_clock(state.playback, dt_s)
+        unit, weights = decisions.unit, decisions.emotion_weights
+        held = self._held_by_mode[signal.mode]
+        if held:
+            unit, weights = unit.copy(), weights.copy()
+            for layer in held:
+                unit[:, layer] = self.bank.rest[layer]
+                weights[:, layer] = self._neutral_weights(layer)
+        changed = unit != play.unit
+        fresh = decisions.started | changed
+        # A posture that is chosen again goes on; a layer held by the mode does not hear the planner's starts.
+        fresh[:, self._posture] = changed[:, self._posture]
+        for layer in held:
+            fresh[:, layer] = changed[:, layer]
+        if fresh.any():
+            play = playback.begin(
+                self.bank, play, fresh, unit, decisions.duration_s, weights, decisions.variant_pick, self._posture
+            )
+        drift_to = emotion if signal.mode in ("full", "body") else np.broadcast_to(_NEUTRAL, emotion.shape)
+        play = playback.refresh(self.bank, play, drift_to, self._posture, dt_s)
+        value, play, jumped = playback.sample(self.bank, play, self._posture)
+        blend = state.blend
+        events = fresh | jumped
+        if events.any():
+            base_s = self.life.transition_s * (emotion @ self.life.tempo)
+            blend = blending.switch(
+                self.bank, blend, play, events, value, base_s, state.contact_frames, self._posture, dt_s
+            )
+        return play, blending.advance_blend(blend, value, dt_s)
+
+    def _neutral_weights(self, layer: int) -> Floats:
+        unit = self.bank.rest[layer]
+        return np.asarray(self.library.mix_weights(_NEUTRAL, unit)) if layer == self._posture else np.zeros(7)
+
+    def _enliven(
+        self,
+        state: PerformerState,
+        play: playback.Playback,
+        blend: blending.Blend,
+        signal: PerformSignal,
+        emotion: Floats,
+        dt_s: float,
+    ) -> tuple[liveliness.Life, Floats, Floats, Floats]:
+        """Breath, sway and the head's share of the gaze added to the row."""
+        to_target = signal.gaze_target - state.contact_frames[:, 1, :3, 3]
+        aim = np.empty((len(to_target), 2))
+        aim[:, 0] = np.arctan2(to_target[:, 0], to_target[:, 2])
+        aim[:, 1] = np.arctan2(to_target[:, 1], np.hypot(to_target[:, 0], to_target[:, 2]))
+        aim *= blend.known[:, None] & state.blend.known[:, None]
+        looking = np.where((self.bank.looks[play.unit] & play.active).any(axis=1), 0.0, 1.0)
+        life, added, lungs, blink = liveliness.advance_life(
+            self.life, state.life, emotion, aim, looking, signal.speaking, dt_s
+        )
+        row = blend.row.copy()
+        row[:, _ADDED] += added
+        return life, row, lungs, blink
+
+    @staticmethod
+    def _normal(row: Floats) -> tuple[Floats, Floats]:
+        rotation = bl.normalize(row[:, ch.ROTATION].reshape(len(row), ch.JOINTS, 4))
+        return rotation, row[:, ch.ROOT]
+
+    @staticmethod
+    def _hands(row: Floats, blend: blending.Blend, contact_frames: Floats) -> Floats:
+        """(n, 2, 4, 4) where the hands are wanted, in model space: kept in their contact frames."""
+        n = len(row)
+        local = bl.affine(bl.normalize(row[:, ch.PALM].reshape(n, 2, 4)))
+        local[..., :3, 3] = row[:, ch.WRIST].reshape(n, 2, 3)
+        frames = contact_frames[np.arange(n)[:, None], blend.frame]
+        return np.asarray(frames @ local)
+
+    @staticmethod
+    def _clearance(joints: Floats, ends: Floats, hand: Floats, row: Floats) -> Floats:
+        """(n, 2, 3) the push that keeps both hands and forearms out of body and table."""
+        n = len(row)
+        local = np.empty((n, 2, 1 + ch.POINTS_PER_HAND, 3), dtype=np.float32)
+        local[:, :, 0] = _PALM_POINT
+        local[:, :, 1:] = row[:, ch.POINTS].reshape(n, 2, ch.POINTS_PER_HAND, 3)
+        points = np.empty((n, 2, 7, 3), dtype=np.float32)
+        wrist = hand[:, :, :3, 3]
+        points[:, :, 0] = wrist
+        points[:, :, 1:6] = local @ hand[:, :, :3, :3].swapaxes(-1, -2) + wrist[:, :, None]
+        # The elbow follows the wrist about half way.
+        elbow = joints.take(figure.LOWER[:2], axis=1)[..., :3, 3] + 0.5 * (wrist - ends[:, :2])
+        points[:, :, 6] = 0.5 * (wrist + elbow)
+        maps = collision.body_frames(
+            {name: joints[:, figure.WHERE[name]] for name in ("chest", "spine", "hips", "head")}
+        )
+        return collision.push_out(maps, points)
+
+    @staticmethod
+    def _place_limbs(
+        rotation: Floats,
+        joints: Floats,
+        ends: Floats,
+        hand: Floats,
+    ) -> None:
+        """Arms to their hands, legs to their feet: rewrites the twelve joints of the limbs in rotation."""
+        n = len(rotation)
+        upper, lower = joints.take(figure.UPPER, axis=1), joints.take(figure.LOWER, axis=1)
+        target = np.empty((n, 4, 3), dtype=np.float32)
+        target[:, :2] = hand[:, :, :3, 3]
+        target[:, 2:] = figure.FEET_WORLD
+        hinge = (upper[..., :3, :3] @ figure.HINGE[..., None])[..., 0]
+        at_root, at_joint, _ = limbs.solve_limbs(upper[..., :3, 3], lower[..., :3, 3], ends, target, hinge, _SOFT)
+        # A rotation in model space becomes one before the local rotation, seen from the parent's frame.
+        parents = joints.take(figure.SHOULDERS, axis=1)
+        seen = np.empty((n, 8, 4), dtype=np.float32)
+        seen[:, :4, :3] = (parents[..., :3, :3].swapaxes(-1, -2) @ at_root[..., :3, None])[..., 0]
+        seen[:, 4:, :3] = (upper[..., :3, :3].swapaxes(-1, -2) @ at_joint[..., :3, None])[..., 0]
+        seen[:, :4, 3], seen[:, 4:, 3] = at_root[..., 3], at_joint[..., 3]
+        bones = _ENDS[:8]
+        rotation[:, bones] = bl.normalize(bl.multiply(seen, rotation.take(bones, axis=1)))
+        lower_now = bl.rotation_matrix(bl.multiply(at_root, at_joint)) @ lower[..., :3, :3]
+        wanted = np.zeros((n, 4, 3, 3), dtype=np.float32)
+        wanted[:, :2] = hand[:, :, :3, :3]
+        wanted[:, 2:] = np.eye(3, dtype=np.float32)
+        rotation[:, _ENDS[8:]] = bl.from_matrix(lower_now.swapaxes(-1, -2) @ wanted)
+
+    def _eyes(
+        self, life: liveliness.Life, joints: Floats, signal: PerformSignal, dt_s: float
+    ) -> tuple[liveliness.Life, Floats]:
+        head = joints[:, _HEAD]
+        turn = head[:, :3, :3].swapaxes(-1, -2)
+        eyes = head[:, :3, 3] + head[:, :3, :3] @ _EYES
+        toward = (turn @ (signal.gaze_target - eyes)[..., None])[..., 0]
+        ahead = (joints[:, _CHEST, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
+        return liveliness.look(self.life, life, toward, np.arctan2(ahead[:, 0], ahead[:, 2]), dt_s)
+
+
+def _shares(signal: PerformSignal) -> Floats:
+    """Felt emotion as shares that sum to 1 (their sum is never below 1, eq. 4); neutral where the body is held."""
+    if signal.mode == "face":
+        return np.broadcast_to(_NEUTRAL, signal.emotion.shape)
+    total = np.maximum(signal.emotion.sum(axis=-1, keepdims=True), 1e-9)
+    return np.asarray(signal.emotion / total)

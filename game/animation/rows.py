@@ -1,0 +1,205 @@
+"""Frames of takes as rows (game.animation.channels): forward kinematics of whole spans, seamless loops, warps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from game.animation import channels as ch
+from game.core import quaternion as quat
+from game.core.humanoid import REFERENCE
+
+__all__ = [
+    "CROSSFADE_FRAMES",
+    "REST_ROW",
+    "additive_rows",
+    "align_to",
+    "make_rows",
+    "period_of",
+    "resample",
+    "seamless_loop",
+]
+
+Floats = NDArray[np.floating[Any]]
+Rows = NDArray[np.floating[Any]]
+
+CROSSFADE_FRAMES = 30
+"""Frames over which a looped span's end melts into its start, at most a third of the span."""
+
+_INDEX = REFERENCE.index
+_SIDES = ("left", "right")
+_WRISTS = [_INDEX[f"{s}Hand"] for s in _SIDES]
+_FRAME_JOINTS = {"head": _INDEX["head"], "chest": _INDEX["chest"], "hips": _INDEX["hips"]}
+
+
+def make_rows(rotation: Floats, root: Floats, frames: tuple[str, str]) -> Rows:
+    """rotation (F, 41, 4) local, root (F, 3) -> (F, CHANNELS).
+
+    frames: the contact frame of the left and of the right hand.
+    """
+    count = len(rotation)
+    shift = np.broadcast_to(REFERENCE.rest_translation.astype(rotation.dtype), (count, ch.JOINTS, 3)).copy()
+    shift[:, 0] = root
+    position, turned = REFERENCE.to_model(rotation, shift)
+    rows = np.empty((count, ch.CHANNELS), dtype=np.float32)
+    rows[:, ch.ROTATION] = _continuous(rotation).reshape(count, -1)
+    rows[:, ch.ROOT] = root
+    wrist = np.empty((count, 2, 3))
+    palm = np.empty((count, 2, 4))
+    points = np.empty((count, 2, ch.POINTS_PER_HAND, 3))
+    for hand, side in enumerate(_SIDES):
+        place, turn = position[:, _WRISTS[hand]], turned[:, _WRISTS[hand]]
+        points[:, hand] = _points_in_hand(side, position, turned, place, turn)
+        if frames[hand] != "table":
+            joint = _FRAME_JOINTS[frames[hand]]
+            back = quat.conjugate(turned[:, joint])
+            place = quat.rotate(back, place - position[:, joint])
+            turn = quat.multiply(back, turn)
+        wrist[:, hand], palm[:, hand] = place, turn
+    rows[:, ch.WRIST] = wrist.reshape(count, -1)
+    rows[:, ch.PALM] = _continuous(palm).reshape(count, -1)
+    rows[:, ch.POINTS] = points.reshape(count, -1)
+    return rows
+
+
+def _points_in_hand(side: str, position: Floats, turned: Floats, wrist: Floats, turn: Floats) -> Floats:
+    """(F, 4, 3) middle knuckle and the tips of middle, index and little finger, in the hand's frame."""
+    found = [position[:, _INDEX[f"{side}MiddleIntermediate"]]]
+    for finger in ("Middle", "Index", "Little"):
+        joint = _INDEX[f"{side}{finger}Intermediate"]
+        along = REFERENCE.rest_translation[joint].astype(turned.dtype)
+        found.append(
+            position[:, joint] + quat.rotate(turned[:, joint], np.broadcast_to(along, position[:, joint].shape))
+        )
+    points = np.stack(found, axis=1) - wrist[:, None]
+    return quat.rotate(quat.conjugate(turn)[:, None], points)
+
+
+def _continuous(q: Floats) -> Floats:
+    """Signs of (F, J, 4) chosen so that neighbouring frames, then the mean and the identity, share a hemisphere."""
+    dots = (q[1:] * q[:-1]).sum(-1)
+    signs = np.ones((*q.shape[:2], 1), dtype=q.dtype)
+    signs[1:, :, 0] = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
+    q = q * signs
+    mean_w = q[..., 3].mean(axis=0)
+    return np.asarray(q * np.where(mean_w < 0.0, -1.0, 1.0)[None, :, None])
+
+
+def _unit(rows: Rows) -> Rows:
+    """Renormalise the quaternions of blended rows."""
+    rows = rows.copy()
+    for part in (ch.ROTATION, ch.PALM):
+        q = rows[:, part].reshape(len(rows), -1, 4)
+        rows[:, part] = (q / np.maximum(np.linalg.norm(q, axis=-1, keepdims=True), 1e-6)).reshape(len(rows), -1)
+    return rows
+
+
+def align_to(rows: Rows, reference: Rows) -> Rows:
+    """Flip whole quaternion channels of rows (F, CHANNELS) so that they lie on the side of reference (CHANNELS,)."""
+    rows = rows.copy()
+    for part in (ch.ROTATION, ch.PALM):
+        q = rows[:, part].reshape(len(rows), -1, 4)
+        dots = (q.mean(axis=0) * reference[part].reshape(-1, 4)).sum(-1)
+        rows[:, part] = (q * np.where(dots < 0.0, -1.0, 1.0)[None, :, None]).reshape(len(rows), -1)
+    return rows
+
+
+def seamless_loop(rows: Rows) -> Rows:
+    """(F, CHANNELS) -> (F − B + 1, CHANNELS) that can be played round and round; the last row repeats the first.
+
+    The last B frames are cross-faded with the first B, so the end flows into the start without a seam.
+    """
+    count = len(rows)
+    if count < 4:
+        return np.concatenate([rows, rows[:1]])
+    blend = max(min(CROSSFADE_FRAMES, count // 3), 1)
+    u = ((np.arange(blend) + 1.0) / (blend + 1.0))[:, None]
+    weight = u * u * (3.0 - 2.0 * u)
+    loop = rows[blend:].copy()
+    loop[-blend:] = rows[count - blend :] * (1.0 - weight) + rows[:blend] * weight
+    return _unit(np.concatenate([loop, loop[:1]]).astype(np.float32))
+
+
+def resample(rows: Rows, count: int, stroke: tuple[float, float] | None = None) -> Rows:
+    """Rows at ``count`` moments from first to last.
+
+    stroke: (where it is, where it shall be), as shares of the span; the strokes of variants that are mixed align.
+    """
+    u = np.linspace(0.0, 1.0, count)
+    if stroke is not None:
+        source, goal = (float(np.clip(s, 0.05, 0.95)) for s in stroke)
+        u = np.interp(u, [0.0, goal, 1.0], [0.0, source, 1.0])
+    at = u * (len(rows) - 1)
+    low = np.minimum(at.astype(np.intp), max(len(rows) - 2, 0))
+    high = np.minimum(low + 1, len(rows) - 1)
+    t = (at - low)[:, None]
+    return _unit((rows[low] * (1.0 - t) + rows[high] * t).astype(np.float32))
+
+
+def additive_rows(rows: Rows, owned: NDArray[np.bool_], share: float) -> Rows:
+    """What a unit adds where it owns nothing: its departure from the straight way between its ends.
+
+    owned: (PARTS,) bool. Owned channels stay as they are, torso and head keep ``share`` of their departure as a
+    small rotation (vector part of a quaternion), everything else becomes 0.
+    """
+    count = len(rows)
+    result = np.where(owned[ch.PART_OF_CHANNEL], rows, np.float32(0.0))
+    q = rows[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
+    out = result[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
+    line = np.linspace(0.0, 1.0, count)[:, None]
+    for joint in ch.ADDITIVE_JOINTS:
+        if owned[ch.PART_OF_JOINT[joint]]:
+            continue
+        here = q[:, joint : joint + 1]
+        straight = quat.nlerp(here[:1], here[-1:], line)
+        delta = quat.multiply(quat.conjugate(straight), here)
+        delta = delta * np.where(delta[..., 3:] < 0.0, -1.0, 1.0)
+        out[:, joint, :3] = share * delta[:, 0, :3]
+    if not owned[ch.PARTS.index("spine")]:
+        root = rows[:, ch.ROOT]
+        result[:, ch.ROOT] = share * (root - (root[:1] * (1.0 - line) + root[-1:] * line))
+    result[:, ch.ROTATION] = out.reshape(count, -1)
+    return result.astype(np.float32)
+
+
+def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
+    """(first frame, frames) of a stretch of whole periods in the middle of a unit, None where nothing repeats.
+
+    Periodic are hammering fingers, a jiggling knee, fanning: the owned rotations return to where they were, while
+    they travelled far in between.
+    """
+    count = len(rows)
+    start, stop = count // 4, count - count // 5
+    moving = rows[start:stop, ch.ROTATION][:, owned[ch.PART_OF_CHANNEL[ch.ROTATION]]]
+    room = stop - start
+    if room < 16 or moving.shape[1] == 0:
+        return None
+    # Slow drifts are no rhythm: what remains after a moving mean is.
+    moving = moving - uniform_filter1d(moving, min(30, room), axis=0, mode="nearest")
+    energy = float((moving * moving).mean())
+    if energy < 1e-6:
+        return None
+    best: tuple[float, int] | None = None
+    for lag in range(4, room // 2 + 1):
+        difference = moving[lag:] - moving[:-lag]
+        mismatch = float((difference * difference).mean()) / (2.0 * energy)
+        if best is not None and mismatch > best[0] + 0.25:
+            break
+        if best is None or mismatch < best[0]:
+            best = (mismatch, lag)
+    if best is None or best[0] > 0.12:
+        return None
+    period = best[1]
+    whole = max((room - 1) // period, 1) * period
+    ends = [float(np.square(moving[first + whole] - moving[first]).sum()) for first in range(max(room - whole, 1))]
+    return start + int(np.argmin(ends)), whole
+
+
+REST_ROW: Rows = make_rows(
+    np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (1, ch.JOINTS, 1)), REFERENCE.rest_translation[:1], ("chest", "chest")
+)[0]
+"""The T-pose as a row."""
+REST_ROW.setflags(write=False)
