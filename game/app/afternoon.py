@@ -53,7 +53,7 @@ def visit_stall(assets: TalkAssets, afternoon: Afternoon, item: str) -> TalkStat
     )
 
 
-def finish_talk(afternoon: Afternoon, talk: TalkState) -> Afternoon:
+def finish_talk(assets: TalkAssets, afternoon: Afternoon, talk: TalkState) -> Afternoon:
     """Book a talk that has ended: the purchase, if there was one, and what the shopkeeper remembers."""
     bought = afternoon.bought
     if talk.deal_price:
@@ -64,5 +64,5 @@ def finish_talk(afternoon: Afternoon, talk: TalkState) -> Afternoon:
         visits=afternoon.visits + 1,
         failed_visits=afternoon.failed_visits + (0 if talk.deal_price else 1),
         bought=bought,
-        memory=memory_of(talk.story),
+        memory=memory_of(assets.script, talk.story),
     )

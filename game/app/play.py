@@ -60,14 +60,18 @@ class Window:
         self.session = session
         self.device = device
         self.stage = load_stage()
-        self.fonts = _fonts(session)
         level = level or DEFAULT
         self.renderer = Renderer(
-            device, self.stage.model, self.stage.stall, self.stage.backdrop, level=level, fonts=self.fonts
+            device,
+            self.stage.model,
+            self.stage.stall,
+            self.stage.backdrop,
+            level=level,
+            fonts=FontSet.for_language("en"),
         )
         self.show = StageShow(self.stage)
         self.screen: Screen = TitleScreen()
-        self._language = session.settings.language
+        self._language = _speakable(session)
         self._late_s = 0.0
         self._tick(None)
 
@@ -127,9 +131,7 @@ class Window:
         """One frame of whatever is on screen."""
         session = self.session
         if session.settings.language != self._language:
-            self._language = session.settings.language
-            self.fonts = _fonts(session)
-            self.renderer.set_fonts(self.fonts)
+            self._language = _speakable(session)
         params = session.world.body.face_params
         assert params is not None
         camera = TALK_CAMERA if isinstance(self.screen, TalkScreen) else HOME_CAMERA
@@ -149,18 +151,17 @@ class Window:
         self.screen.draw(self.session, Canvas(hud, settings.language, settings.ui_scale))
 
 
-def _fonts(session: Session) -> FontSet:
-    """Fonts of the language; without Japanese ones the game says so and stays in English."""
-    try:
-        return FontSet.for_language(session.settings.language)
-    except MissingFont as error:
-        if session.settings.language == "en":
-            raise
-        session.message = str(error)
-        session.settings = replace(session.settings, language="en")
-        session.strings = session.strings.switched("en")
-        session.world = replace(session.world, language="en")
-        return FontSet.for_language("en")
+def _speakable(session: Session) -> str:
+    """The language there is a font for: without a Japanese one the game says so and stays in English."""
+    if session.settings.language == "ja":
+        try:
+            FontSet.for_language("ja")
+        except MissingFont as error:
+            session.message = str(error)
+            session.settings = replace(session.settings, language="en")
+            session.strings = session.strings.switched("en")
+            session.world = replace(session.world, language="en")
+    return session.settings.language
 
 
 def open_session(args: argparse.Namespace) -> Session:
@@ -222,9 +223,8 @@ def run(args: argparse.Namespace) -> int:
     session = open_session(args)
     pygame.display.init()
     try:
-        device = Device.window(
-            *args.size, title=session.strings("title"), vsync=True, fullscreen=session.settings.fullscreen
-        )
+        width, height = args.size
+        device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)
     except MissingPart as error:
         pygame.display.quit()
         print(f"error: {error}; without a window: run_game.py autoplay, run_game.py snapshot", file=sys.stderr)

@@ -219,4 +219,5 @@ def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:
             tells=answer.at("tells").flag(),
         ),
     )
-    return replace(state, beat=resume(assets.script, story, talk_env(state, assets)))
+    story, beat = resume(assets.script, story, talk_env(state, assets))
+    return replace(state, story=story, beat=beat)

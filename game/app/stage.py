@@ -9,21 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from game.animation import Pose, Rig, RigState
+from game.animation import Pose, Rig, SpringState
 from game.app.rig import load_rig
 from game.core.paths import ASSETS
 from game.face import DrawList, FaceParams, tessellate
-from game.render import (
-    HERO,
-    Camera,
-    CharacterModel,
-    FrameView,
-    Hud,
-    StaticMesh,
-    load_character,
-    load_picture,
-    load_stall,
-)
+from game.render import HERO, Camera, CharacterModel, FrameView, Hud, StaticMesh
+from game.render.assets import load_character, load_picture, load_stall
 
 __all__ = ["HOME_CAMERA", "TALK_CAMERA", "Puppet", "StageAssets", "StageShow", "load_stage"]
 
@@ -61,7 +52,7 @@ class Puppet:
     """The rig in motion between ticks: spring bones advance once per tick, poses are blended for frames between."""
 
     rig: Rig
-    state: RigState
+    state: SpringState
     before: NDArray[np.float32]
     after: NDArray[np.float32]
 

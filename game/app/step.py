@@ -144,7 +144,7 @@ def _tokens(timed: TimedText, start_s: float) -> list[tuple[str, float]]:
 
 def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:
     """What the body feels and the face shows follow their targets; both fast, neither at once."""
-    felt = damp(world.felt, world.felt_target, FELT_HALF_LIFE_S, TICK_S)
+    felt = np.asarray(damp(world.felt, world.felt_target, FELT_HALF_LIFE_S, TICK_S), dtype=np.float64)
     shown = damp(world.shown[:6], world.shown_target[:6], SHOWN_HALF_LIFE_S, TICK_S)
     return replace(world, felt=felt, shown=with_neutral(shown))
 

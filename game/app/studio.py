@@ -25,7 +25,8 @@ from game.app.strings import load_strings
 from game.app.ui import PALETTE, Canvas, Rect
 from game.app.world import TICK_S, Intent, World
 from game.core.errors import BadInput, Where
-from game.render import CLOSEUP, Camera, Device, FontSet, Hud, Renderer, level_named, save_png
+from game.render import CLOSEUP, Camera, Device, FontSet, Hud, Renderer, level_named
+from game.render.assets import save_png
 from game.story import Spoken
 
 __all__ = ["CAMERAS", "Studio", "add_studio_arguments", "write_png"]

@@ -34,7 +34,7 @@ class OutcomeScreen:
         talk = session.world.talk
         assert talk is not None
         screen = OutcomeScreen(talk, session.world.marks, Buttons())
-        session.afternoon = finish_talk(session.afternoon, talk)
+        session.afternoon = finish_talk(session.assets.talk, session.afternoon, talk)
         session.world = leave_talk(session.world)
         return screen
 

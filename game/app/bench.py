@@ -1,0 +1,153 @@
+"""Measure speed against floors run beside it, in the same process.
+
+examples:
+  run_game.py bench
+  run_game.py bench planner render --json
+
+A floor is the least code that does the same work: NumPy alone, a bare scene, a hand-written loop. Benchmarks are no
+tests: absolute figures drift from machine to machine, the ratios tell.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from game.app.bench_rows import Row, row
+from game.core.paths import ROOT
+
+__all__ = ["BENCHES", "add_arguments", "first_frame", "run"]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``bench``."""
+    parser.add_argument("what", nargs="*", choices=[*BENCHES, []], metavar="WHAT", help=f"of {' '.join(BENCHES)}")
+    parser.add_argument("--json", action="store_true", help="machine-readable")
+
+
+def pose() -> list[Row]:
+    """Planner's units to skin matrices, for 1, 100 and 1000 characters."""
+    from game.app import bench_pose
+
+    return bench_pose.rows()
+
+
+def planner() -> list[Row]:
+    """Eq. 1 for 3 layers of 40 units."""
+    from game.app import bench_planner
+
+    return bench_planner.rows()
+
+
+def render() -> list[Row]:
+    """The whole frame by quality level, against a bare scene of that size."""
+    from game.app import bench_render
+
+    return bench_render.rows()
+
+
+def autoplay() -> list[Row]:
+    """Talks per second, with and without the body's planner."""
+    from game.app.autoplay import play_episode
+    from game.app.body import BodyObserver
+    from game.app.content import load_talk_assets, stall_path
+    from game.app.policies import POLICIES
+
+    assets = load_talk_assets(stall_path("flea"))
+
+    def talks(count: int, observer: BodyObserver | None) -> tuple[float, int]:
+        start, moves = time.perf_counter(), 0
+        for episode in range(count):
+            if observer is not None:
+                observer.begin(1, episode)
+            for _, after, _, _ in play_episode(assets, POLICIES["random"], 1, episode):
+                moves += 1
+                if observer is not None:
+                    observer.watch(assets, after)
+        return time.perf_counter() - start, moves
+
+    talks(20, None)
+    plain = [talks(150, None) for _ in range(3)]
+    rate = [moves / seconds for seconds, moves in plain]
+    rows = [
+        row("autoplay: talk alone, choices/s", rate, unit="/s", more_is_better=True),
+        row("autoplay: talk alone, episodes/s", [150 / s for s, _ in plain], unit="/s", more_is_better=True),
+    ]
+    with_body = [talks(4, BodyObserver.load()) for _ in range(2)]
+    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", [4 / s for s, _ in with_body], unit="/s",
+                    more_is_better=True))  # fmt: skip
+    return rows
+
+
+def first_frame() -> None:
+    """What a start of the game does up to the first finished frame, without a display."""
+    from game.app.play import Window, open_session
+    from game.render import Device
+
+    args = argparse.Namespace(language="en", stall="flea", seed=1, mode="full", overlay=False)
+    device = Device.headless(1280, 720)
+    window = Window(open_session(args), device)
+    window.draw()
+    device.context.finish()
+
+
+def start() -> list[Row]:
+    """Seconds from the start of the interpreter to the first frame."""
+    code = "from game.app.bench import first_frame; first_frame()"
+    seconds = []
+    for _ in range(3):
+        before = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
+        seconds.append(time.perf_counter() - before)
+    bare = []
+    for _ in range(3):
+        before = time.perf_counter()
+        subprocess.run([sys.executable, "-c", "import numpy, scipy, pygame, moderngl"], cwd=ROOT, check=True)
+        bare.append(time.perf_counter() - before)
+    return [row("start: to the first frame", seconds, unit="s", floor=statistics.median(bare), wanted="<= 2.5 s")]
+
+
+BENCHES: dict[str, Callable[[], list[Row]]] = {
+    "pose": pose,
+    "planner": planner,
+    "render": render,
+    "autoplay": autoplay,
+    "start": start,
+}
+
+
+def run(args: argparse.Namespace) -> int:
+    """Run the chosen benches and print one table, or one JSON document."""
+    results: dict[str, list[dict[str, Any]]] = {}
+    for name in args.what or list(BENCHES):
+        rows = BENCHES[name]()
+        results[name] = rows
+        if not args.json:
+            _print(name, rows)
+    if args.json:
+        print(json.dumps(results, ensure_ascii=False))
+    return 0
+
+
+def _print(name: str, rows: list[Row]) -> None:
+    print(f"\n{name}\n  {'what':<58}{'median':>11}{'min':>11}{'spread':>8}{'floor':>11}{'ratio':>7}  wanted")
+    for item in rows:
+        unit = item.get("unit", "")
+
+        def shown(key: str, item: Row = item, unit: str = unit) -> str:
+            value = item.get(key)
+            return "–" if value is None else f"{value:,.4g} {unit}"
+
+        ratio = item.get("ratio")
+        spread = item.get("spread")
+        print(
+            f"  {item['name']:<58}{shown('median'):>11}{shown('min'):>11}"
+            f"{'–' if spread is None else f'{spread:.0%}':>8}{shown('floor'):>11}"
+            f"{'–' if ratio is None else f'{ratio:.2f}':>7}  {item.get('wanted', '')}"
+        )

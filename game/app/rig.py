@@ -1,0 +1,57 @@
+"""A VRM file's skeleton, skin and springs as the animation wants them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from game.animation import Rig
+from game.animation import SpringChain as RigChain
+from game.animation import SpringCollider as RigCollider
+from game.core.errors import BadInput, Where
+from game.formats import SpringChain, Vrm, read_vrm, skeleton_of
+
+__all__ = ["load_rig", "rig_of"]
+
+
+def load_rig(path: Path) -> Rig:
+    """Read a VRM and make its rig. Raises BadInput where it has no skin to move."""
+    return rig_of(read_vrm(path))
+
+
+def rig_of(vrm: Vrm) -> Rig:
+    """The rig of a VRM's first skin: humanoid bones, twist joints, spring chains with their colliders."""
+    file = vrm.gltf
+    if not file.skins:
+        raise BadInput("nothing to move", where=Where(file.path, pointer="/skins"), expected="a skin", seen="none")
+    skin = file.skins[0]
+    wanted = set(skin.joints) | set(vrm.bones.values())
+    wanted |= {joint.node for chain in vrm.springs for joint in chain.joints}
+    wanted |= {collider.node for collider in vrm.colliders}
+    found = skeleton_of(file, wanted)
+    return Rig.from_arrays(
+        found.skeleton.names,
+        found.skeleton.parents,
+        found.skeleton.rest_translation,
+        np.asarray(skin.inverse_bind),
+        rest_rotation=found.skeleton.rest_rotation,
+        skin_joint=found.skin_joints(file, 0),
+        bones={name: found.joint[node] for name, node in vrm.bones.items()},
+        chains=[_chain(chain, found.joint) for chain in vrm.springs if len(chain.joints) > 1],
+        colliders=[RigCollider(found.joint[c.node], c.offset, c.radius_m, c.tail) for c in vrm.colliders],
+    )
+
+
+def _chain(chain: SpringChain, joint: dict[int, int]) -> RigChain:
+    # The last joint of a VRM chain only gives the length of the piece before it.
+    pieces = chain.joints[:-1]
+    return RigChain(
+        joints=tuple(joint[j.node] for j in chain.joints),
+        stiffness=tuple(j.stiffness for j in pieces),
+        gravity_power=tuple(j.gravity_power for j in pieces),
+        gravity_dir=tuple(j.gravity_dir for j in pieces),
+        drag=tuple(j.drag_force for j in pieces),
+        hit_radius_m=tuple(j.hit_radius_m for j in pieces),
+        colliders=tuple(chain.colliders),
+    )
