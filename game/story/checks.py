@@ -25,12 +25,12 @@ def check_structure(script: Script, findings: Findings, home: Where, standing: W
     hub = script.nodes[script.home]
     if not hub.waits or not hub.standing:
         findings.add("E_BAD_VALUE", home, f"home: {script.home!r} is no hub with standing choices")
-    if not any(choice.act == "turn_to_go" and _always(choice) for choice in script.standing):
+    if not any(choice.act == "leave" and _always(choice) for choice in script.standing):
         findings.add(
             "E_NO_EXIT",
             standing,
             "no standing choice that always lets the player go",
-            "act: turn_to_go with once: false, and neither if: nor needs:",
+            "act: leave with once: false, and neither if: nor needs:",
         )
     for node in script.nodes.values():
         if node.waits and not node.standing and not any(_always(choice) for choice in node.choices):

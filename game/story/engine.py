@@ -80,7 +80,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class Stimulus:
-    """``feel:`` of a choice, node or line that was passed: signed changes per emotion."""
+    """``feel:`` of a node or line that was passed: signed changes per emotion (a choice's own stands in Choice)."""
 
     feel: Mapping[str, float]
     source: str
@@ -192,7 +192,8 @@ class _Run:
             self.say_offer()
         self.chosen.add(choice_id)
         self.seen.add(choice_id)
-        self.apply(choice.effects, choice.feel, choice_id)
+        # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
+        self.apply(choice.effects, {}, choice_id)
         return self.branch(choice.to)
 
     def say_offer(self) -> None:

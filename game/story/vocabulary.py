@@ -25,7 +25,7 @@ Type = Literal["number", "bool", "text"]
 
 ACTS: tuple[str, ...] = ("praise", "joke", "empathise", "story", "press", "flaw", "apologise", "small_talk")
 # Moves that are on the table in every round: say nothing, turn to go, put an offer.
-STANDING_ACTS: tuple[str, ...] = ("wait", "turn_to_go", "offer")
+STANDING_ACTS: tuple[str, ...] = ("wait", "leave", "offer")
 
 # What the market can make of a move, and whether that ends the talk.
 OUTCOMES: Mapping[str, bool] = MappingProxyType(
