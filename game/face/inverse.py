@@ -131,7 +131,7 @@ class FaceSearch:
         free: tuple[str, ...] = (),
     ) -> list[Proposal]:
         """The best faces, best first. ``diversity`` > 0 takes off that much score for every part that a face shares
-        with the most similar face already proposed (the standard parts count too)."""
+        with the faces already proposed, on average (standard parts count too)."""
         if diversity <= 0.0:
             chosen = [int(i) for i in self.order(score, top, locked, free)]
         else:
@@ -140,10 +140,10 @@ class FaceSearch:
             shared = np.zeros(len(pool))
             left = np.round(score[pool], 9).copy()
             chosen = []
-            for _ in range(min(top, len(pool))):
-                pick = int(np.argmax(left - diversity * shared))
+            for count in range(min(top, len(pool))):
+                pick = int(np.argmax(left - diversity * shared / max(count, 1)))
                 chosen.append(int(pool[pick]))
-                shared = np.maximum(shared, (parts == parts[pick]).sum(axis=1))
+                shared += (parts == parts[pick]).sum(axis=1)
                 left[pick] = -np.inf
         return [
             Proposal(
