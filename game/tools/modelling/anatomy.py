@@ -62,7 +62,7 @@ def _head(spec: HeadSpec, centre: Floats, jaw: Field) -> Field:
     mass = intersection(0.06, mass, ellipsoid(at(0, 0, -0.16), (0.30, 0.42, 0.318)))
     mass = subtraction(0.05, mass, mirrored(ellipsoid(at(0.074, -0.030, 0.205), spec.eye_hollow)))
     nose_top = at(0, -0.060, 0.140)
-    mass = union(0.022, mass, cone(nose_top, nose_top + (0, -0.014, spec.nose_length), 0.006, 0.0055))
+    mass = union(0.022, mass, cone(nose_top, nose_top + (0, -0.014, spec.nose_length), 0.009, 0.0075))
     ear = subtraction(
         0.012,
         ellipsoid(at(0.170, -0.030, -0.014), spec.ear),

@@ -26,7 +26,7 @@ from game.tools.modelling.weights import Binder
 
 __all__ = ["LEVELS", "Character", "build_character"]
 
-LEVELS = {40000: 0.60, 25000: 0.345, 15000: 0.185, 8000: 0.090}
+LEVELS = {40000: 0.43, 25000: 0.250, 15000: 0.143, 8000: 0.068}
 """Triangles of each level of detail (within a tenth) and the detail scale that gives them."""
 
 _FACE_SQUARE_M = 0.340
@@ -52,12 +52,12 @@ class Character:
 
     def hand_parts(self, detail: Detail) -> list[Part]:
         """Forearm and hand of both sides."""
-        mesh = self._hand.mesh(detail.triangles(4600))
+        mesh = self._hand.mesh(detail.triangles(5600))
         left = Part("left_hand", "skin", mesh, self.binder.left_hand(mesh.position), 0.75)
         return [left, left.mirrored(self.rig.mirrored_columns())]
 
     def head_parts(self, detail: Detail) -> list[Part]:
-        mesh = self._head.mesh(detail.triangles(7500))
+        mesh = self._head.mesh(detail.triangles(8500))
         return [Part("head", "face", mesh, self.binder.head(mesh.position), 0.9)]
 
     def parts(self, detail: Detail) -> list[Part]:

@@ -54,7 +54,7 @@ class Clothes:
         self._pocket = sculpted(self._pocket_field, (-0.07, 0.70, 0.04), (0.07, 0.82, 0.16), 0.003)
         self._badge_at, self._badge_out = self._on_front(np.array([0.0]), np.array([0.752]), 0.0215)
         self._badge = sculpted(self._badge_field, self._badge_at[0] - 0.03, self._badge_at[0] + 0.03, 0.0014)
-        self._coat = sculpted(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.17), (0.36, 1.02, 0.17), 0.0042, 9e-3)
+        self._coat = sculpted(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.23), (0.36, 1.02, 0.23), 0.0042, 9e-3)
         self._scarf = sculpted(self._scarf_field, (-0.12, 0.84, -0.12), (0.12, 1.04, 0.15), 0.0035)
         self._sleeve = sculpted(self._sleeve_field, (0.05, 0.50, -0.10), (0.46, 1.02, 0.10), 0.0045, 5e-3)
         self._cuff = sculpted(self._cuff_field, (0.18, 0.55, -0.10), (0.46, 0.85, 0.10), 0.004)
@@ -136,11 +136,11 @@ class Clothes:
         d = smooth_max(d, -np.maximum(inside, self.anatomy.trunk(p) - 0.05), 0.006)
         opening = smooth_max(np.abs(p[:, 0]) - np.interp(p[:, 1], _OPENING_Y, _OPENING_HALF_WIDTH), -p[:, 2], 0.02)
         d = smooth_max(d, -opening, 0.006)
-        d = smooth_max(d, -cone((0, 0.955, -0.012), (0, 1.06, -0.02), 0.066, 0.09)(p), 0.008)
+        d = smooth_max(d, -cone((0, 0.962, -0.006), (0, 1.06, -0.010), 0.066, 0.09)(p), 0.008)
         return smooth_max(d, self.spec.coat_hem - p[:, 1], 0.01)
 
     def _scarf_field(self, p: Floats) -> Floats:
-        level = np.stack([p[:, 0], p[:, 1] + 0.22 * p[:, 2], p[:, 2] * 0.98], 1)
+        level = np.stack([p[:, 0], p[:, 1] + 0.10 * p[:, 2], p[:, 2] * 0.98], 1)
         level[:, 1] = (level[:, 1] - 0.985) / 1.05 + 0.985
         creases = 0.0028 * np.sin(4 * np.arctan2(p[:, 0], p[:, 2]) + 95 * (p[:, 1] - 0.98))
         loop = ring((0, 0.985, -0.004), 0.063, 0.022)(level) + creases
@@ -196,10 +196,10 @@ class Clothes:
         neck = np.array(
             [
                 (0.058, 0.952, 0.050),
-                (0.066, 0.968, 0.012),
-                (0.062, 0.978, -0.030),
-                (0.040, 0.984, -0.064),
-                (0, 0.986, -0.076),
+                (0.066, 0.970, 0.012),
+                (0.065, 0.981, -0.030),
+                (0.043, 0.988, -0.064),
+                (0, 0.991, -0.077),
             ]
         )
         half = np.vstack([right, neck])
@@ -224,25 +224,26 @@ class Clothes:
         ]
         parts += self._coat_parts(binder, detail) + self._lapel_parts(binder, detail)
         if detail.trims:
-            parts.append(_part("badge", "teal", self._badge.mesh(detail.triangles(1300)), binder.shirt, 0.6, True))
+            parts.append(_part("badge", "teal", self._badge.mesh(detail.triangles(1000)), binder.shirt, 0.6, True))
             parts += self._stitches(binder)
         scarf = self._scarf.mesh(detail.triangles(3000))
         parts.append(Part("scarf", "red", scarf, binder.scarf(scarf.position, self.tails), 0.8))
         columns = binder.rig.mirrored_columns()
-        for name, sculpt, count in (("left_sleeve", self._sleeve, 2400), ("left_cuff", self._cuff, 1500)):
+        for name, sculpt, count in (("left_sleeve", self._sleeve, 2000), ("left_cuff", self._cuff, 1100)):
             part = _part(name, "shirt", sculpt.mesh(detail.triangles(count)), binder.left_sleeve, 0.9)
             parts += [part, part.mirrored(columns)]
         return parts
 
     def _coat_parts(self, binder: Binder, detail: Detail) -> list[Part]:
         """The coat with its cream sleeve hem and stripe, cut along level sets, and the crest on the back."""
-        coat = self._coat.mesh(detail.triangles(11500))
+        coat = self._coat.mesh(detail.triangles(10500))
 
         def down_sleeve(mesh: Mesh) -> Floats:
             p = mesh.position.copy()
             p[:, 0] = np.abs(p[:, 0])
-            on_sleeve = self._coat_sleeve(p) < self._coat_body(p) - 0.010
-            return np.asarray(np.where(on_sleeve, self.anatomy.arm.distance_along(p), -9.0))
+            # Off the sleeve the value falls steeply but steadily, so that the cut there stays a smooth line.
+            off_sleeve = np.maximum(self._coat_sleeve(p) - self._coat_body(p) + 0.003, 0.0)
+            return np.asarray(self.anatomy.arm.distance_along(p) - 6.0 * off_sleeve)
 
         hem_at = self.spec.sleeve_end - self.spec.sleeve_stripe
         parts = []

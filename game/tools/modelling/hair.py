@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from game.tools.modelling.fields import Field, Floats, ellipsoid, smooth_max, smooth_min, unit
+from game.tools.modelling.fields import Field, Floats, ellipsoid, smooth_max, smooth_min, smoothstep, unit
 from game.tools.modelling.lofts import bezier, loft
 from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
@@ -62,7 +62,9 @@ class Hair:
             # The nape: a cylinder behind the ears, so that no gap opens between the back clumps.
             nape = smooth_max(np.hypot(q[:, 0], q[:, 2]) - 0.160, np.abs(q[:, 1] + 0.07) - 0.085, 0.03)
             nape = smooth_max(nape, q[:, 2] + 0.02, 0.03)
-            return smooth_max(smooth_min(scalp(p), nape, 0.04), (hairline - q[:, 1]) * 0.8, 0.012)
+            # On the crown the cap rises between the clumps, so that their partings are grooves and not gaps.
+            crown = 0.018 * smoothstep(0.06, 0.13, q[:, 1])
+            return smooth_max(smooth_min(scalp(p) - crown, nape, 0.04), (hairline - q[:, 1]) * 0.8, 0.012)
 
         return field
 

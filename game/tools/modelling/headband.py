@@ -62,7 +62,7 @@ class Headband:
         radius = np.interp(angle, np.r_[fine, 2 * np.pi], np.r_[radius, radius[0]])
         width = self.spec.width * (1 + 0.10 * np.sin(angle * 6))
         path = out * (radius + 0.001)[:, None] + self._centre
-        return loft(path, out, width, self.spec.thickness, detail.sides(12, 6), "band", closed=True)
+        return loft(path, out, width, self.spec.thickness, detail.sides(10, 6), "band", closed=True)
 
     def _leaf_path(self, name: str, count: int) -> tuple[Floats, Floats, Floats]:
         direction_, length, _, droop, bend = _LEAVES[name]

@@ -102,13 +102,13 @@ class Legwear:
             Part("trouser_hem", "trousers2", hem, binder.legs(hem.position), 1.0),
         ]
         columns = binder.rig.mirrored_columns()
-        shoe = self._shoe.mesh(detail.triangles(1700))
+        shoe = self._shoe.mesh(detail.triangles(1500))
         # The toe cap is cut off by a slanted plane, like rubber dipped over the canvas.
         slope = shoe.position[:, 2] - self._toes[2] - 0.022 - 0.5 * (shoe.position[:, 1] - 0.04)
         cap, canvas = split_at_level(shoe, slope)
         left = (
             ("left_calf", "skin", self._calf.mesh(detail.triangles(800)), 0.8),
-            ("left_sock", "cream", self._sock.mesh(detail.triangles(1200)), 0.8),
+            ("left_sock", "cream", self._sock.mesh(detail.triangles(900)), 0.8),
             ("left_shoe", "red", canvas, 0.9),
             ("left_shoe_cap", "cream", cap, 0.9),
             ("left_sole", "cream", self._sole.mesh(detail.triangles(900)), 0.8),

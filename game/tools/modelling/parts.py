@@ -42,7 +42,7 @@ class Detail:
     @property
     def trims(self) -> bool:
         """Whether stitches and other tiny trims are worth their triangles."""
-        return self.scale > 0.18
+        return self.scale > 0.10
 
     def triangles(self, full: int) -> int:
         return max(24, int(full * self.scale))
