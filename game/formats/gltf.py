@@ -19,7 +19,7 @@ from game.formats.gltf_mesh import build_meshes
 from game.formats.gltf_model import GltfFile, GltfImage, GltfMaterial
 from game.formats.gltf_node import build_nodes, build_skins, check_scenes
 from game.formats.gltf_shape import GLTF, LISTS
-from game.formats.json_shape import Report, check
+from game.formats.json_shape import Anything, Items, Report, check
 
 __all__ = ["read_gltf"]
 
@@ -41,8 +41,11 @@ def read_gltf(path: Path | str, *, max_bytes: int = 256_000_000) -> GltfFile:
     path = Path(path)
     container = read_container(path, max_bytes=max_bytes)
     document = container.document
-    lengths = {name: len(document[name]) for name in LISTS if isinstance(document.get(name), list)}
-    report = Report(path, lengths)
+    report = Report(path)
+    for name in LISTS:
+        # First of all, since every index is held against the length of its list.
+        check(document.get(name, []), Items(Anything(), empty_ok=True), report, (name,))
+    report.lengths = {name: len(document.get(name, [])) for name in LISTS}
     check(document, GLTF, report)
     _check_version(document, report)
     _check_extensions(document, report)
