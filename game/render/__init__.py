@@ -1,5 +1,6 @@
 """Drawing: GL device, meshes on the GPU, toon passes, the baked scene, faces, text and interface."""
 
+from game.render.assets import load_character, load_picture, load_stall, save_png
 from game.render.camera import CLOSEUP, HERO, Camera
 from game.render.device import Device
 from game.render.hud import Colour, Hud, rgba
@@ -27,6 +28,10 @@ __all__ = [
     "Renderer",
     "StaticMesh",
     "level_named",
+    "load_character",
+    "load_picture",
+    "load_stall",
     "pick_level",
     "rgba",
+    "save_png",
 ]

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from game.render.device import PREMULTIPLIED, Device, Owner, layout, set_uniforms
 from game.render.levels import Level
-from game.render.model import MAX_JOINTS, CharacterMesh, CharacterModel, ShadowMesh
-from game.render.silhouette import SilhouetteFinder
+from game.render.model import MAX_JOINTS, CharacterMesh, CharacterModel, Run, ShadowMesh
+from game.render.silhouette import Edges, SilhouetteFinder
 
 __all__ = ["CharacterDrawing"]
 
@@ -29,7 +29,19 @@ class CharacterDrawing(Owner):
         self._context = device.context
         self._mesh = mesh = model.mesh(level.triangles)
         self._joints = self.own(device.context.buffer(reserve=MAX_JOINTS * 48, dynamic=True))
-        self._finder = SilhouetteFinder(mesh.edges, mesh.triangle) if device.software else None
+        above = mesh.above
+        self._finders = (
+            {
+                True: SilhouetteFinder(mesh.edges, mesh.triangle),
+                False: SilhouetteFinder(
+                    Edges(mesh.edges.adjacency[: above.edges], mesh.edges.face[: above.edges]),
+                    mesh.triangle[: above.triangles],
+                ),
+            }
+            if device.software
+            else None
+        )
+        self._whole = True
         self._make_skinning(device, mesh)
         self._make_drawing(device, mesh, level)
         self._make_outline(device, mesh)
@@ -64,7 +76,7 @@ class CharacterDrawing(Owner):
         self._palette = self._buffer(mesh.palette)
         self._extra = self._buffer(mesh.extra)
         self._index = self._buffer(mesh.triangle)
-        self._draws: list[tuple[moderngl.VertexArray, int, int]] = []
+        self._draws: list[tuple[moderngl.VertexArray, Run]] = []
         for run in mesh.runs:
             flags = {name: int(_CLASSES[run.kind] == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS")}
             program = self.own(
@@ -88,13 +100,12 @@ class CharacterDrawing(Owner):
                     self._index,
                 )
             )
-            self._draws.append((array, run.first, run.count))
+            self._draws.append((array, run))
 
     def _make_outline(self, device: Device, mesh: CharacterMesh) -> None:
         clip, _, _, line = self._captured
         program = self.own(device.program("outline.vert.glsl", "outline.frag.glsl", "outline.geom.glsl"))
         self._edges = self.own(device.context.buffer(np.ascontiguousarray(mesh.edges.adjacency), dynamic=True))
-        self._edge_corners = mesh.edges.adjacency.size
         self._outline = self.own(
             device.vertex_array(
                 program,
@@ -152,14 +163,23 @@ class CharacterDrawing(Owner):
         self._shadow_target = self.own(context.framebuffer([], self.shadow_map))
 
     def pose(
-        self, skin_matrices: NDArray[np.float32], world_to_clip: NDArray[np.float64], size: tuple[int, int]
+        self,
+        skin_matrices: NDArray[np.float32],
+        world_to_clip: NDArray[np.float64],
+        size: tuple[int, int],
+        whole: bool = True,
     ) -> tuple[int, int, int, int]:
-        """Skin the mesh. skin_matrices (j, 4, 4); returns the picture box (x, y, width, height) that encloses it."""
+        """Skin the mesh, without its legs unless ``whole``; skin_matrices (j, 4, 4).
+
+        Returns the picture box (x, y, width, height) that encloses the mesh.
+        """
+        self._whole = whole
         rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
         self._joints.write(rows)
         self._joints.bind_to_uniform_block(1)
         self._anywhere.use()
-        self._skinning.transform(self._captured, moderngl.POINTS)
+        count = len(self._mesh.position) if whole else self._mesh.above.vertices
+        self._skinning.transform(self._captured, moderngl.POINTS, vertices=count)
         return self._screen_box(rows, world_to_clip, size)
 
     def _screen_box(
@@ -194,12 +214,14 @@ class CharacterDrawing(Owner):
         context.depth_func = "<"
         self.shadow_map.use(1)
         face.use(2)
-        for array, first, count in self._draws:
-            array.render(vertices=count, first=first)
-        corners = self._edge_corners
-        if self._finder is not None:
-            clip = np.frombuffer(self._captured[0].read(), dtype=np.float32).reshape(-1, 4)
-            rows = self._finder.find(clip)
+        for array, run in self._draws:
+            if self._whole or run.group == "above":
+                array.render(vertices=run.count, first=run.first)
+        corners = 4 * (len(self._mesh.edges.adjacency) if self._whole else self._mesh.above.edges)
+        if self._finders is not None:
+            vertices = len(self._mesh.position) if self._whole else self._mesh.above.vertices
+            clip = np.frombuffer(self._captured[0].read(vertices * 16), dtype=np.float32).reshape(-1, 4)
+            rows = self._finders[self._whole].find(clip)
             corners = rows.size
             if corners:
                 self._edges.write(rows)

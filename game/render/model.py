@@ -22,6 +22,7 @@ __all__ = [
     "Part",
     "Run",
     "ShadowMesh",
+    "Share",
     "StaticMesh",
     "joint_boxes",
     "merge_character",
@@ -70,8 +71,18 @@ class Run:
 
 
 @dataclass(frozen=True)
+class Share:
+    """How many of a mesh's vertices, triangles and edges come before those of the legs."""
+
+    vertices: int
+    triangles: int
+    edges: int
+
+
+@dataclass(frozen=True)
 class CharacterMesh:
-    """A skinned mesh of one level of detail."""
+    """A skinned mesh of one level of detail. What belongs to the legs alone lies at the end of every array, so that
+    a person behind a table is drawn by the first ``above`` of each."""
 
     position: Floats
     normal: Floats
@@ -81,9 +92,10 @@ class CharacterMesh:
     palette: NDArray[np.uint8]  # (v, 12), graded
     extra: Floats  # (v, 4)
     triangle: NDArray[np.int32]  # (t, 3)
-    runs: tuple[Run, ...]
+    runs: tuple[Run, ...]  # groups "above" and "legs"
     edges: Edges
     joint_box: Floats  # (j, 8, 3) corners of the rest-space box of each joint's vertices
+    above: Share
 
 
 @dataclass(frozen=True)
@@ -162,12 +174,7 @@ def _palette(parts: Sequence[Part], graded: bool) -> NDArray[np.uint8]:
     return np.repeat(np.stack(rows), [len(p.position) for p in parts], axis=0)
 
 
-def _freeze(*arrays: NDArray[np.generic]) -> None:
-    for array in arrays:
-        array.setflags(write=False)
-
-
-def merge_character(parts: Sequence[Part], joint_count: int) -> CharacterMesh:
+def merge_character(parts: Sequence[Part], joint_count: int, leg_joints: Sequence[int] = ()) -> CharacterMesh:
     """Join skinned parts. Raises BadInput for unknown classes, missing skinning or too many joints."""
     if not 1 <= joint_count <= MAX_JOINTS:
         raise BadInput("character", expected=f"1 to {MAX_JOINTS} joints", seen=joint_count)
@@ -180,26 +187,65 @@ def merge_character(parts: Sequence[Part], joint_count: int) -> CharacterMesh:
             raise BadInput(f"part {part.material.name}", expected=f"joints below {joint_count}", seen=part.joint.max())
         joints.append(part.joint)
         weights.append(part.weight)
-    position = np.concatenate([p.position for p in parts])
     joint, weight = np.concatenate(joints), np.concatenate(weights)
-    outline = np.concatenate([p.outline for p in parts])
-    extra = np.concatenate([np.zeros((len(p.position), 4), np.float32) if p.extra is None else p.extra for p in parts])
+    position = np.concatenate([p.position for p in parts])
     triangle, runs = _join(parts)
+    kind = np.repeat([KINDS.index(run.kind) for run in runs], [run.count // 3 for run in runs])
+    leg = (np.where(np.isin(joint, leg_joints), weight, 0).sum(axis=1) > 250)[triangle].all(axis=1)
+    # Frontmost triangles first: what they cover is rejected by depth before it is shaded.
+    triangle = triangle[np.lexsort((-position[triangle, 2].sum(axis=1), kind, leg))]
+    runs = _leg_runs(kind, leg)
+    above = np.unique(triangle[: np.count_nonzero(~leg)])
+    order = np.concatenate([above, np.setdiff1d(np.arange(len(position)), above)])
+    place = np.empty(len(order), np.int32)
+    place[order] = np.arange(len(order), dtype=np.int32)
+    triangle = place[triangle]
+    position, joint, weight = position[order], joint[order], weight[order]
+    outline = np.concatenate([p.outline for p in parts])[order]
+    extra = np.concatenate([np.zeros((len(p.position), 4), np.float32) if p.extra is None else p.extra for p in parts])
+    edges = find_edges(position, triangle, outline)
+    edge_above = (edges.face < np.count_nonzero(~leg)).all(axis=1)
+    front = np.argsort(~edge_above, kind="stable")
     mesh = CharacterMesh(
         position,
-        np.concatenate([p.normal for p in parts]),
+        np.concatenate([p.normal for p in parts])[order],
         outline,
         joint,
         weight,
-        _palette(parts, graded=True),
-        extra,
+        _palette(parts, graded=True)[order],
+        extra[order],
         triangle,
         runs,
-        find_edges(position, triangle, outline),
+        Edges(edges.adjacency[front], edges.face[front]),
         joint_boxes(position, joint, weight, joint_count),
+        Share(len(above), int(np.count_nonzero(~leg)), int(np.count_nonzero(edge_above))),
     )
-    _freeze(mesh.position, mesh.normal, outline, joint, weight, mesh.palette, extra, triangle, mesh.joint_box)
+    for array in (
+        mesh.position,
+        mesh.normal,
+        outline,
+        joint,
+        weight,
+        mesh.palette,
+        mesh.extra,
+        triangle,
+        mesh.joint_box,
+    ):
+        array.setflags(write=False)
     return mesh
+
+
+def _leg_runs(kind: NDArray[np.int_], leg: NDArray[np.bool_]) -> tuple[Run, ...]:
+    """Runs of triangles sorted by leg, then kind; ``kind`` and ``leg`` (t,) in any order."""
+    runs: list[Run] = []
+    first = 0
+    for group, mask in (("above", ~leg), ("legs", leg)):
+        for index, name in enumerate(KINDS):
+            count = 3 * int(np.count_nonzero(mask & (kind == index)))
+            if count:
+                runs.append(Run(group, name, first, count))
+                first += count
+    return tuple(runs)
 
 
 def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float, float]]) -> StaticMesh:
@@ -215,7 +261,8 @@ def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float
         runs,
         MappingProxyType(dict(anchors)),
     )
-    _freeze(mesh.position, mesh.normal, mesh.outline, mesh.palette, triangle)
+    for array in (mesh.position, mesh.normal, mesh.outline, mesh.palette, triangle):
+        array.setflags(write=False)
     return mesh
 
 

@@ -12,10 +12,10 @@ from game.render.device import Device, Owner
 from game.render.face_painter import FacePainter, hidden_face
 from game.render.hud import Hud
 from game.render.levels import DEFAULT, Level
-from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, Lights
+from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
 from game.render.model import CharacterModel, StaticMesh
 from game.render.scene_drawing import BakeKey, SceneDrawing
-from game.render.targets import Box, FrameTargets, copy_box, open_scissor, union
+from game.render.targets import Box, FrameTargets, copy_box, union
 from game.render.text import FontSet
 from game.render.view import FrameView
 
@@ -53,6 +53,8 @@ class Renderer(Owner):
         self._baked: BakeKey | None = None
         self._last_box: Box = (0, 0, 0, 0)
         self._frames = 0
+        self._light: LightBox | None = None  # for which the shadow map was drawn
+        self._shown: moderngl.Framebuffer | None = None
         self.level = level
         self.set_level(level)
 
@@ -69,7 +71,7 @@ class Renderer(Owner):
             if part is not None:
                 part.release()
         self._targets = self._character = self._painter = None
-        self._baked = None
+        self._baked = self._light = self._shown = None
 
     def release(self) -> None:
         self._drop_level()
@@ -79,21 +81,19 @@ class Renderer(Owner):
         """Draw one frame at the device's size, into its window or, without one, to be read back."""
         targets = self._ensure_targets()
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items)
-        whole: Box = (0, 0, *targets.size)
-        stale = whole if key != self._baked else self._last_box
+        changed = self._last_box
         if key != self._baked:
             self._scene.bake(key, targets.bake, self.level.line_px)
             self._baked = key
+            changed = (0, 0, *targets.size)
+        # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
+        targets.work.use()
+        self.device.context.copy_framebuffer(targets.work, targets.bake.still)
         if self._character is not None and self._painter is not None:
             self._paint_face(view, self._painter)
-            self._last_box = self._draw_character(view, self._character, self._painter, targets, stale)
-        elif stale[2]:
-            copy_box(self.device.context, targets.work, targets.bake.still, stale)
-            self._last_box = (0, 0, 0, 0)
-        changed = union(stale, self._last_box) if stale[2] else self._last_box
-        if targets.samples and changed[2]:
-            copy_box(self.device.context, targets.shown, targets.work, changed)
-        self._show(view, targets)
+            self._last_box = self._draw_character(view, self._character, self._painter, targets)
+            changed = union(changed, self._last_box) if changed[2] else self._last_box
+        self._show(view, targets, changed)
         self._frames += 1
 
     def _ensure_targets(self) -> FrameTargets:
@@ -115,23 +115,20 @@ class Renderer(Owner):
             painter.paint(self._face)
 
     def _draw_character(
-        self, view: FrameView, character: CharacterDrawing, painter: FacePainter, targets: FrameTargets, stale: Box
+        self, view: FrameView, character: CharacterDrawing, painter: FacePainter, targets: FrameTargets
     ) -> Box:
-        context, level = self.device.context, self.level
+        level = self.level
         light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
         world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, level.line_px)
-        box = character.pose(view.skin_matrices, world_to_clip, targets.size)
-        box = _with_shadow(box, targets.size)
-        if self._frames % level.shadow_every == 0 or stale[2] == targets.size[0]:
+        box = character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall)
+        if self._frames % level.shadow_every == 0 or self._light is not light:
             character.cast()
-        copy_box(context, targets.work, targets.bake.still, union(stale, box) if stale[2] else box)
-        targets.work.scissor = box
+            self._light = light
         targets.work.use()
         character.draw(painter.under)
         self._draw_shadow_on_table(view, character, targets)
         character.draw_over(painter.over)
-        open_scissor(targets.work)
-        return box
+        return _with_shadow(box, targets.size)
 
     def _draw_shadow_on_table(self, view: FrameView, character: CharacterDrawing, targets: FrameTargets) -> None:
         context = self.device.context
@@ -144,25 +141,33 @@ class Renderer(Owner):
         receiver.render(moderngl.TRIANGLE_STRIP)
         targets.work.depth_mask = True
 
-    def _show(self, view: FrameView, targets: FrameTargets) -> None:
+    def _show(self, view: FrameView, targets: FrameTargets, changed: Box) -> None:
         context = self.device.context
-        output = context.screen if self.device.windowed else targets.output.target
-        if self.device.windowed:
-            output.viewport = (0, 0, *targets.size)
-        output.use()
-        context.copy_framebuffer(output, targets.shown)
-        if view.hud is not None:
+        picture = targets.work
+        if targets.samples:
+            copy_box(context, targets.resolved, targets.work, changed)
+            picture = targets.resolved
+        # The interface must not stay in a picture that the next frame only mends.
+        if self.device.windowed or (targets.samples and view.hud is not None):
+            output = context.screen if self.device.windowed else targets.output
+            if self.device.windowed:
+                output.viewport = (0, 0, *targets.size)
             output.use()
+            context.copy_framebuffer(output, picture)
+            picture = output
+        self._shown = picture
+        if view.hud is not None:
+            picture.use()
             self.hud.begin(targets.size)
             view.hud(self.hud)
             self.hud.end()
 
     def read_pixels(self) -> NDArray[np.uint8]:
-        """The last frame as (height, width, 3) uint8, first row at the top. Only without a window."""
-        targets = self._ensure_targets()
-        source = self.device.context.screen if self.device.windowed else targets.output.target
-        width, height = targets.size
-        data = source.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
+        """The last frame as (height, width, 3) uint8, first row at the top."""
+        if self._shown is None:
+            raise RuntimeError("nothing has been drawn yet")
+        width, height = self.device.size
+        data = self._shown.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
 
 

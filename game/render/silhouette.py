@@ -59,10 +59,11 @@ class SilhouetteFinder:
     """Picks the silhouette edges on the CPU: on a software rasteriser ten times faster than testing all edges there."""
 
     def __init__(self, edges: Edges, triangle: NDArray[np.int32]) -> None:
+        """All of triangle (t, 3) may be used by the edges; a border edge is in front where its only face is."""
         self._adjacency = edges.adjacency
         self._corners = tuple(np.ascontiguousarray(triangle[:, i]) for i in range(3))
         self._one = np.ascontiguousarray(edges.face[:, 0])
-        # A border edge is drawn where its only face is in front: compare with a face that never is.
+        # The face beyond a border never is in front: a place of its own at the end of the list.
         self._other = np.where(edges.face[:, 1] < 0, len(triangle), edges.face[:, 1])
 
     def find(self, clip: NDArray[np.float32]) -> NDArray[np.int32]:

@@ -6,7 +6,7 @@ import moderngl
 
 from game.render.device import Device, Owner
 
-__all__ = ["BakeTargets", "Box", "FrameTargets", "Picture", "copy_box", "open_scissor", "union"]
+__all__ = ["BakeTargets", "Box", "FrameTargets", "Picture", "copy_box", "union"]
 
 Box = tuple[int, int, int, int]  # x, y (from below), width, height in pixels
 BAKE_SAMPLES = 4
@@ -18,17 +18,12 @@ def union(a: Box, b: Box) -> Box:
     return (x, y, max(a[0] + a[2], b[0] + b[2]) - x, max(a[1] + a[3], b[1] + b[3]) - y)
 
 
-def open_scissor(target: moderngl.Framebuffer) -> None:
-    """Draw to the whole framebuffer again."""
-    target.scissor = None  # type: ignore[assignment]  # moderngl takes None; its stub forgets
-
-
 def copy_box(context: moderngl.Context, target: moderngl.Framebuffer, source: moderngl.Framebuffer, box: Box) -> None:
     """Copy colour and depth (as far as both have it) inside the box; resolves samples. ``target`` stays bound."""
     target.scissor = box
     target.use()
     context.copy_framebuffer(target, source)
-    open_scissor(target)
+    target.scissor = None  # type: ignore[assignment]  # moderngl takes None; its stub forgets
     target.use()
 
 
@@ -80,7 +75,8 @@ class BakeTargets(Owner):
 class FrameTargets(Owner):
     """Everything that depends on the picture's size and samples.
 
-    work: the still picture with the character drawn into it; shown: ``work`` without samples.
+    work: the still picture with the character drawn into it; resolved: the same without samples; output: with the
+    interface. Without samples, work takes the place of the others.
     """
 
     def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
@@ -88,5 +84,5 @@ class FrameTargets(Owner):
         self.size, self.samples = size, samples
         self.bake = self.own(BakeTargets(device, size, samples))
         self.work = _target(self, device, size, samples)
-        self.shown = self.own(Picture(device, size)).target if samples else self.work
-        self.output = self.own(Picture(device, size))
+        self.resolved = self.own(Picture(device, size)).target if samples else self.work
+        self.output = self.own(Picture(device, size)).target if samples else self.work

@@ -43,7 +43,7 @@ _JAPANESE = (
     "sourcehansansjpregular",
     "mplus1pregular",
 )
-_SAMPLE_JA = "あの値段は高いね、骨董品"
+_UNASSIGNED = "\u0378"  # a code point without a character: fonts draw their box for unknown ones
 
 
 class MissingFont(MissingPart):
@@ -109,6 +109,7 @@ class FontSet:
             pygame.font.init()
         self._files = {role: tuple(paths) for role, paths in files.items()}
         self._fonts: dict[tuple[Path, int], pygame.font.Font] = {}
+        self._unknown: dict[Path, bytes] = {}
         self._choice: dict[tuple[str, str], Path | None] = {}
 
     @classmethod
@@ -145,10 +146,15 @@ class FontSet:
         """The first font of the role that has the character, None if none has it."""
         key = (role, character)
         if key not in self._choice:
-            self._choice[key] = next(
-                (path for path in self._files[role] if self._font(path, 16).metrics(character)[0] is not None), None
-            )
+            self._choice[key] = next((path for path in self._files[role] if self._has(path, character)), None)
         return self._choice[key]
+
+    def _has(self, path: Path, character: str) -> bool:
+        """Whether the font draws the character as something else than its box for unknown ones."""
+        font = self._font(path, 24)
+        if path not in self._unknown:
+            self._unknown[path] = _bits(font.render(_UNASSIGNED, True, (255, 255, 255)))
+        return character.isspace() or _bits(font.render(character, True, (255, 255, 255))) != self._unknown[path]
 
     def missing(self, text: str, role: str = "body") -> str:
         """The characters of the text that no font of the role has."""
@@ -201,6 +207,10 @@ class FontSet:
                     line += token
             lines.append(line.rstrip())
         return lines
+
+
+def _bits(surface: pygame.Surface) -> bytes:
+    return f"{surface.get_size()}".encode() + pygame.surfarray.array_alpha(surface).tobytes()
 
 
 _NO_LINE_START = (

@@ -1,0 +1,167 @@
+"""From asset files to render meshes: characters (.vrm with .lod.glb), stalls (.glb), pictures (.png)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pygame.image
+import pygame.surfarray
+from numpy.typing import NDArray
+
+from game.core.errors import BadInput, Where
+from game.formats import GltfFile, GltfMaterial, GltfNode, GltfPrimitive, read_gltf
+from game.render.model import (
+    KINDS,
+    CharacterModel,
+    Material,
+    Part,
+    ShadowMesh,
+    StaticMesh,
+    merge_character,
+    merge_static,
+)
+
+_LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
+
+__all__ = ["load_character", "load_picture", "load_stall", "save_png"]
+
+
+def load_character(vrm: Path) -> CharacterModel:
+    """Read ``<id>.vrm`` and, beside it, ``<id>.lod.glb`` with the coarser meshes and the shadow mesh.
+
+    Raises BadInput where a file is unreadable, or lacks what the renderer needs.
+    """
+    meshes = {}
+    shadow: ShadowMesh | None = None
+    joint_count = 0
+    for path in (vrm, vrm.with_suffix("").with_suffix(".lod.glb")):
+        file = read_gltf(path)
+        if not file.skins:
+            raise BadInput("character", where=Where(path), expected="a skin", seen="none")
+        joint_count = len(file.skins[0].joints)
+        legs = [i for i, node in enumerate(file.skins[0].joints) if _LEG.search(file.nodes[node].name)]
+        for node, extras in _mesh_nodes(file):
+            primitives = _primitives(file, node)
+            if extras.get("shadow"):
+                shadow = _shadow_mesh(primitives[0])
+            else:
+                parts = [_part(file, primitive, "body") for primitive in primitives]
+                meshes[int(extras.get("lod", 40_000))] = merge_character(parts, joint_count, legs)
+    if shadow is None or not meshes:
+        missing = "a mesh" if not meshes else "a node with extras.shadow in its .lod.glb"
+        raise BadInput("character", where=Where(vrm), expected=missing, seen="none")
+    return CharacterModel(vrm.stem, meshes, shadow, joint_count)
+
+
+def load_stall(path: Path) -> StaticMesh:
+    """Read a stall's .glb: one node per group, items with their anchor. Raises BadInput."""
+    file = read_gltf(path)
+    parts: list[Part] = []
+    anchors: dict[str, tuple[float, float, float]] = {}
+    for node, extras in _mesh_nodes(file):
+        group = str(extras.get("group", node.name))
+        if "anchor" in extras:
+            x, y, z = (float(v) for v in extras["anchor"])
+            anchors[group] = (x, y, z)
+        parts += [_part(file, primitive, group) for primitive in _primitives(file, node)]
+    return merge_static(parts, anchors)
+
+
+def load_picture(path: Path) -> NDArray[np.uint8]:
+    """A picture file as (h, w, 3) uint8, first row at the top. Raises BadInput."""
+    try:
+        surface = pygame.image.load(str(path))
+    except (pygame.error, OSError) as error:
+        raise BadInput(f"unreadable picture: {error}", where=Where(path)) from error
+    return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
+
+
+def save_png(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Write (h, w, 3) uint8 pixels as a PNG file."""
+    height, width = pixels.shape[:2]
+    surface = pygame.image.frombuffer(np.ascontiguousarray(pixels).tobytes(), (width, height), "RGB")
+    pygame.image.save(surface, str(path), "png")
+
+
+def _mesh_nodes(file: GltfFile) -> Iterator[tuple[GltfNode, Mapping[str, Any]]]:
+    for node in file.nodes:
+        if node.mesh is not None:
+            yield node, node.extras if isinstance(node.extras, Mapping) else {}
+
+
+def _primitives(file: GltfFile, node: GltfNode) -> tuple[GltfPrimitive, ...]:
+    assert node.mesh is not None
+    return file.meshes[node.mesh].primitives
+
+
+def _material(file: GltfFile, primitive: GltfPrimitive) -> Material:
+    where = Where(file.path, pointer=f"/materials/{primitive.material}")
+    if primitive.material is None:
+        raise BadInput("mesh without a material", where=Where(file.path))
+    material: GltfMaterial = file.materials[primitive.material]
+    extras = material.extras if isinstance(material.extras, Mapping) else {}
+    if extras.get("class") not in KINDS:
+        raise BadInput("material class", where=where, expected=", ".join(KINDS), seen=extras.get("class"))
+    colours = []
+    for key in ("lit", "shade", "deep"):
+        value = extras.get(key)
+        if not isinstance(value, list) or len(value) != 3:
+            raise BadInput(f"material colour {key}", where=where, expected="three numbers in extras", seen=value)
+        colours.append((float(value[0]), float(value[1]), float(value[2])))
+    return Material(material.name, extras["class"], *colours)
+
+
+def _floats(array: NDArray[Any]) -> NDArray[np.float32]:
+    return np.ascontiguousarray(array, dtype=np.float32)
+
+
+def _part(file: GltfFile, primitive: GltfPrimitive, group: str) -> Part:
+    attributes = primitive.attributes
+    material = _material(file, primitive)
+    if "NORMAL" not in attributes or primitive.indices is None:
+        raise BadInput("mesh", where=Where(file.path), expected="NORMAL and indices", seen=", ".join(attributes))
+    position = _floats(attributes["POSITION"])
+    extra = np.zeros((len(position), 4), np.float32)
+    if material.kind == "face" and {"TEXCOORD_0", "_FACE"} <= attributes.keys():
+        extra = np.hstack([_floats(attributes["TEXCOORD_0"]), _floats(attributes["_FACE"])])
+    elif material.kind == "hair" and "_HAIR" in attributes:
+        extra[:, :2] = attributes["_HAIR"]
+    skinned = "JOINTS_0" in attributes
+    return Part(
+        group,
+        material,
+        position,
+        _floats(attributes["NORMAL"]),
+        _floats(attributes.get("_OUTLINE", np.zeros(len(position)))),
+        primitive.indices.reshape(-1, 3),
+        attributes["JOINTS_0"].astype(np.uint8) if skinned else None,
+        _weight_bytes(attributes["WEIGHTS_0"]) if skinned else None,
+        extra,
+    )
+
+
+def _weight_bytes(weight: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Weights (v, 4) in 0..1 as bytes whose rows sum to 255."""
+    total = np.maximum(weight.sum(axis=1, keepdims=True), 1e-6)
+    whole = np.rint(weight / total * 255.0).astype(np.int32)
+    rows = np.arange(len(whole))
+    whole[rows, whole.argmax(axis=1)] += 255 - whole.sum(axis=1)
+    return np.asarray(whole, dtype=np.uint8)
+
+
+def _shadow_mesh(primitive: GltfPrimitive) -> ShadowMesh:
+    attributes = primitive.attributes
+    if primitive.indices is None:
+        raise BadInput("shadow mesh", expected="indices", seen="none")
+    position = _floats(attributes["POSITION"])
+    return ShadowMesh(
+        position,
+        attributes["JOINTS_0"].astype(np.uint8),
+        _weight_bytes(attributes["WEIGHTS_0"]),
+        _floats(attributes.get("_PUSH", np.zeros(len(position)))),
+        primitive.indices.reshape(-1, 3).astype(np.int32),
+    )
