@@ -36,7 +36,7 @@ class PlannerConfig:
     spread: float = 1.0
     rest: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LAYERS_WITH_REST, 0.02))
     presence: float = 1.0
-    tolerance: float = 0.01
+    tolerance: float = 0.02
     radius: float = 0.5
     word_window_s: float = 0.1
 

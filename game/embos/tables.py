@@ -81,16 +81,15 @@ class PlannerTables:
     def _phi_state(self, emotion: Floats) -> Floats:
         felt = emotion[:, :, None]
         total = np.maximum(emotion.sum(axis=1), 1e-12)[:, None]
-        # Axes in this order, (R, 7, P), keep the long one innermost. Sums run over the seven in a fixed order, so
-        # that a character gets the same bits alone and in a crowd (a matrix product would not promise that).
+        # (R, 7, P) keeps the long axis innermost. einsum adds the seven in order for any R, so that a character
+        # gets the same bits alone and in a crowd; a matrix product would not promise that.
         apart = felt - self.intensity_t
         np.abs(apart, out=apart)
-        apart *= felt
-        d = apart.sum(axis=1)
+        d = np.einsum("rk,rkp->rp", emotion, apart)
         d /= total
         share = rank_share_packed(d, self)
         if self.presence > 0.0:
-            shown = (felt * self.exists_t).sum(axis=1)
+            shown = np.einsum("rk,kp->rp", emotion, self.exists_t)
             shown *= self.presence / total
             shown += 1.0 - self.presence
             share *= shown
@@ -108,8 +107,10 @@ def rank_share_packed(d: Floats, tables: PlannerTables) -> Floats:
     rank = np.zeros(packed.shape, dtype=np.intp)
     np.multiply(level[..., 1:] > level[..., :-1], np.arange(1, width), out=rank[..., 1:])
     np.maximum.accumulate(rank, axis=-1, out=rank)
-    share = np.empty(packed.shape)
-    np.put_along_axis(share, packed & 1023, 1.0 - rank / tables.count, axis=-1)
+    share = np.empty(d.size)
+    share[((packed & 1023) + np.arange(0, d.size, width).reshape(rows, -1, 1)).ravel()] = (
+        1.0 - rank / tables.count
+    ).ravel()
     near = 1.0 - d
     near *= share.reshape(rows, -1)
     return near
