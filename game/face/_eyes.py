@@ -99,10 +99,15 @@ def lids(params: FaceParams) -> Lids:
         outer = (32.0, 4.0 + 9.0 * slant - 13.0 * shut)
         height = 40.0 * o
         bottom = -37.0 + 30.0 * squint - 13.0 * max(o - 1.0, 0.0)
-        crown = inner[1] + (height * 0.98 - inner[1] * 0.4) * (1.0 - 0.42 * flat) - 11.7 * fierce
+        crown = inner[1] + (height * 0.98 - inner[1] * 0.4) * (1.0 - 0.42 * flat) - 11.7 * fierce + 3.0 * sad
         top, low, rise = bezier(
             (
-                (inner, (-23.0 + 2.0 * flat, crown), (12.0, height + 9.0 - 14.0 * flat + 5.0 * slant), outer),
+                (
+                    inner,
+                    (-23.0 + 2.0 * flat, crown),
+                    (12.0, height + 9.0 - 14.0 * flat + 5.0 * fierce - 15.0 * sad),
+                    outer,
+                ),
                 (inner, (-27.0, -20.0 + 14.0 * squint), (-12.0, bottom), (5.0, bottom)),
                 ((5.0, bottom), (20.0, bottom), (32.0, -16.0 + 10.0 * squint), outer),
             ),
@@ -174,7 +179,7 @@ def eyeballs(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> N
             "look_x", "look_y", "iris_size", "iris_alpha", "pupil_size", "highlight", "sparkle", "tear_well",
         )
     )  # fmt: skip
-    centre = np.array([[[10.0 * look_x - 1.5, 8.0 * look_y - 2.0]], [[-10.0 * look_x - 1.5, 8.0 * look_y - 2.0]]])
+    centre = np.array([[[10.0 * look_x - 1.5, 11.0 * look_y - 2.0]], [[-10.0 * look_x - 1.5, 11.0 * look_y - 2.0]]])
     # Lights stand on the same screen side in both eyes: x is mirrored with the eye and back.
     spots = np.array(
         [

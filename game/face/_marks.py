@@ -138,11 +138,11 @@ def drops(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
         edge = np.tile(ink("#6BB4D8") * (0.75 * stream), (8, 1))
         ribbons(sheet, body.reshape(8, 12, 2), 2.4 - 2.0 * _UNIT12, edge, late=True)
     if tear > 1e-3:
-        place = (90.0, -106.0 + 6.0 * (1.0 - tear))
-        _water_drop(sheet, place, 11.5 * (0.35 + 0.65 * tear), min(tear * 3.0, 1.0), "#9FDDF8", False)
+        place = (92.0, -116.0 + 16.0 * (1.0 - tear))
+        _water_drop(sheet, place, 15.0 * (0.35 + 0.65 * tear), min(tear * 3.0, 1.0), "#9FDDF8", False)
         second = 2.0 * (tear - 0.5)
         if second > 1e-3:
-            _water_drop(sheet, (-90.0, -98.0), 8.5 * second, second, "#9FDDF8", False)
+            _water_drop(sheet, (-92.0, -104.0), 11.0 * second, second, "#9FDDF8", False)
 
 
 def signs(sheet: Sheet, params: FaceParams) -> None:

@@ -100,7 +100,7 @@ def mouth(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -> None
     bend = -1.0 - 1.5 * pout
     under = bezier(((-reach, 1.5), (-reach * 0.4, bend), (reach * 0.4, bend), (reach, 1.5)), 12)
     under += (lip.x[_MIDDLE], lip.lower[_MIDDLE] - 10.0 - 1.5 * pout)
-    tone = ink(style.lip_soft) * (0.9, 0.9 - 0.2 * pout, 0.9 - 0.2 * pout, 0.9)
+    tone = ink(style.lip_soft) * (0.9, 0.9 - 0.2 * pout, 0.9 - 0.2 * pout, 0.9) * (1.0 - 0.7 * lip.ajar)
     ribbons(sheet, under[None], (1.0 + 1.9 * _SWELL) * (1.0 + 0.5 * pout), tone[None])
 
     # A small hook at a corner that is pulled up, as a pen would leave it.
@@ -148,9 +148,9 @@ def _tongue_out(sheet: Sheet, params: FaceParams, lip: Lips, style: FaceStyle) -
     if out <= 1e-3:
         return
     shown = min(out * 4.0, 1.0)
-    at = lip.x[_MIDDLE] + min(0.52 * float(params[INDEX["mouth_width"]]), 17.0) * _TONGUE_U
+    at = lip.x[_MIDDLE] + min(0.54 * float(params[INDEX["mouth_width"]]), 20.0) * _TONGUE_U
     root = np.interp(at, lip.x, 0.35 * lip.upper + 0.65 * lip.lower)
-    length = 27.0 * out
+    length = 31.0 * out
     tip = np.minimum(root.min() - length * _TONGUE_ROUND, root)
     pink = ink(style.tongue) * shown
     colour = np.empty((1, 2, len(at), 4))
