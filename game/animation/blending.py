@@ -30,24 +30,18 @@ GROWTH = (0.6, 0.7)
 """A transition lasts base·(a + b·√(turn / 90°)): far moves take longer (Fitts)."""
 STROKE_SHARE = 0.85
 """A gesture's preparation must be free of the past before its stroke: at most this share of the time up to it."""
-OVERSHOOT = 0.6
-"""Joints turning fast when they are taken over get a shorter transition: span·speed stays below this (half radians)."""
+MOMENTUM = 0.55
+"""Speed left over from the old source is braked within min(span, this / speed): it carries a joint at most 0.2 × this
+(half radians) too far, a wrist at most 0.2 × this × an arm's length."""
+SHORTEST_BRAKE_S = 0.12
+ARM_M = 0.42
 
-# Hermite basis on [0, 1] with vanishing end and accelerations: value 1 → 0 and slope 1 → 0, and their slopes.
-_BASIS = np.array(
-    [
-        [1.0, 0.0, 0.0, 1.0],
-        [0.0, 1.0, 0.0, 0.0],
-        [0.0, 0.0, -30.0, -18.0],
-        [-10.0, -6.0, 60.0, 32.0],
-        [15.0, 8.0, -30.0, -15.0],
-        [-6.0, -3.0, 0.0, 0.0],
-    ],
-    dtype=np.float32,
-)
+# Quintic Hermite basis on [0, 1]: value 1 → 0 and slope 1 → 0, everything else vanishing at both ends; with slopes.
+_VALUE = np.array([[1, 0], [0, 0], [0, -30], [-10, 60], [15, -30], [-6, 0]], dtype=np.float32)
+_SLOPE = np.array([[0, 1], [1, 0], [0, -18], [-6, 32], [8, -15], [-3, 0]], dtype=np.float32)
 _POWERS = np.arange(6, dtype=np.float32)
-_BASIS.setflags(write=False)
-_POWERS.setflags(write=False)
+for _table in (_VALUE, _SLOPE, _POWERS):
+    _table.setflags(write=False)
 
 _TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
 _TOUCHED.setflags(write=False)
@@ -59,7 +53,7 @@ _ARMS = (ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm"))
 class Blend:
     """n characters. gate: (n, L, CHANNELS) share of each layer. owned: (n, L, PARTS) what each layer's unit owns.
     frame: (n, 2) contact frame of the hands, contact: (n, 2) whether it is declared. offset, offset_speed:
-    (n, CHANNELS) at the last switch, the latter times the transition's span. age_s, span_s: (n, PARTS). row, speed:
+    (n, CHANNELS) at the last switch, the latter times brake_s. age_s, span_s, brake_s: (n, PARTS). row, speed:
     (n, CHANNELS) shown at the last tick. known: (n,) False before the first tick."""
 
     gate: Floats
@@ -70,6 +64,7 @@ class Blend:
     offset_speed: Floats
     age_s: Floats
     span_s: Floats
+    brake_s: Floats
     row: Floats
     speed: Floats
     known: Bools
@@ -88,6 +83,7 @@ def start_blend(n: int, layers: int) -> Blend:
         offset_speed=zero,
         age_s=np.ones((n, parts), dtype=np.float32),
         span_s=np.ones((n, parts), dtype=np.float32),
+        brake_s=np.ones((n, parts), dtype=np.float32),
         row=zero,
         speed=zero,
         known=np.zeros(n, dtype=bool),
@@ -123,12 +119,12 @@ def switch(
     row = row + speed * np.float32(dt_s)
     row, speed = _same_side(row, speed, goal)
     offset, offset_speed = row - goal, speed - goal_speed
-    span = _spans(offset, offset_speed, base_s)
-    span = np.minimum(span, _until_stroke(bank, playback, owned))
+    span = np.minimum(_spans(offset, base_s), _until_stroke(bank, playback, owned))
     fresh = changed & state.known[:, None]
     span = np.where(fresh, span, state.span_s)
+    brake = np.where(fresh, np.minimum(_brakes(offset_speed), span), state.brake_s)
     per_channel = fresh[:, ch.PART_OF_CHANNEL]
-    span_of_channel = span[:, ch.PART_OF_CHANNEL]
+    brake_of_channel = brake[:, ch.PART_OF_CHANNEL]
     return replace(
         state,
         gate=gate,
@@ -136,21 +132,23 @@ def switch(
         frame=frame,
         contact=contact,
         offset=np.where(per_channel, offset, state.offset),
-        offset_speed=np.where(per_channel, offset_speed * span_of_channel, state.offset_speed),
+        offset_speed=np.where(per_channel, offset_speed * brake_of_channel, state.offset_speed),
         age_s=np.where(fresh, np.float32(0.0), state.age_s),
         span_s=span,
+        brake_s=brake,
     )
 
 
 def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
     """The row now shown, the transitions' remains included."""
     row, speed = compose(value, state.gate)
-    share = state.age_s / state.span_s
-    if share.min() < 1.0:
-        basis = (np.minimum(share, 1.0)[..., None] ** _POWERS) @ _BASIS
-        basis[..., 2:] /= state.span_s[..., None]
-        # Past its end a transition's velocity terms are exactly 0 already, by the basis.
-        a, b, da, db = basis.transpose(2, 0, 1).take(ch.PART_OF_CHANNEL, axis=2)
+    if (state.age_s < state.span_s).any():
+        ends = np.stack([state.span_s, state.brake_s])
+        powers = np.minimum(state.age_s / ends, 1.0)[..., None] ** _POWERS
+        curves = np.concatenate([powers[0] @ _VALUE, powers[1] @ _SLOPE], axis=-1)
+        curves[..., 1] /= state.span_s
+        curves[..., 3] /= state.brake_s
+        a, da, b, db = curves.transpose(2, 0, 1).take(ch.PART_OF_CHANNEL, axis=2)
         row = row + state.offset * a + state.offset_speed * b
         speed = speed + state.offset * da + state.offset_speed * db
     return replace(state, row=row, speed=speed, age_s=state.age_s + np.float32(dt_s), known=np.ones_like(state.known))
@@ -205,16 +203,25 @@ def _same_side(row: Floats, speed: Floats, goal: Floats) -> tuple[Floats, Floats
     return row, speed
 
 
-def _spans(offset: Floats, offset_speed: Floats, base_s: Floats) -> Floats:
-    """(n, PARTS) seconds a transition takes: longer for far moves, shorter out of fast ones."""
-    n = len(offset)
-    turn = 2.0 * np.linalg.norm(offset[:, ch.ROTATION].reshape(n, ch.JOINTS, 4), axis=-1)
-    pace = np.linalg.norm(offset_speed[:, ch.ROTATION].reshape(n, ch.JOINTS, 4), axis=-1)
-    far = np.stack([turn[:, joints].max(axis=1) for joints in _PART_JOINTS], axis=1)
-    fast = np.stack([pace[:, joints].max(axis=1) for joints in _PART_JOINTS], axis=1)
-    span = base_s[:, None] * (GROWTH[0] + GROWTH[1] * np.sqrt(far / (0.5 * np.pi)))
-    span = np.clip(np.minimum(span, OVERSHOOT / np.maximum(fast, 1e-3)), SHORTEST_S, LONGEST_S)
-    return np.asarray(span, dtype=np.float32)
+def _spans(offset: Floats, base_s: Floats) -> Floats:
+    """(n, PARTS) seconds a transition takes: longer for far moves."""
+    span = base_s[:, None] * (GROWTH[0] + GROWTH[1] * np.sqrt(_largest(offset) * (4.0 / np.pi)))
+    return np.asarray(np.clip(span, SHORTEST_S, LONGEST_S), dtype=np.float32)
+
+
+def _brakes(offset_speed: Floats) -> Floats:
+    """(n, PARTS) seconds in which the old source's speed is braked."""
+    return np.asarray(np.maximum(MOMENTUM / np.maximum(_largest(offset_speed), 1e-3), SHORTEST_BRAKE_S))
+
+
+def _largest(rows: Floats) -> Floats:
+    """(n, PARTS) the largest change of a joint, half radians; a wrist's way counts as the arm's turn."""
+    n = len(rows)
+    turn = np.linalg.norm(rows[:, ch.ROTATION].reshape(n, ch.JOINTS, 4), axis=-1)
+    most = np.stack([turn[:, joints].max(axis=1) for joints in _PART_JOINTS], axis=1)
+    way = np.linalg.norm(rows[:, ch.WRIST].reshape(n, 2, 3), axis=-1) * (0.5 / ARM_M)
+    most[:, _ARMS] = np.maximum(most[:, _ARMS], way)
+    return np.asarray(most)
 
 
 def _until_stroke(bank: MotionBank, playback: Playback, owned: Bools) -> Floats:

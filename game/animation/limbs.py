@@ -70,8 +70,6 @@ def solve_limbs(
         knee, most = REACH_SOFT * full, REACH_FULL * full
         over = np.maximum(distance - knee, 0.0)
         clamped = np.minimum(distance, knee + (most - knee) * (1.0 - np.exp(-over / (most - knee))))
-        # The clip's own reach is never shortened: it has been clamped when it was performed.
-        clamped = np.maximum(clamped, np.minimum(distance, present))
         reach = np.where(soft[:, None], np.minimum(clamped, reach), reach)
     reach = np.maximum(reach, np.abs(a - b) + np.float32(1e-4))
     sides = np.stack([present, reach])

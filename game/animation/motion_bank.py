@@ -67,6 +67,7 @@ class MotionBank:
 
 def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
     """Rows of every variant in the library. Raises BadInput for a unit without motion or an unknown contact."""
+    takes: dict[str, rw.TakeRows] = {}
     units = library.units
     most = max(max((len(library.variants_of(u, k)) for u in range(len(units)) for k in range(7)), default=1), 1)
     shape = (len(units), len(EMOTIONS), most)
@@ -87,7 +88,8 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
             raise BadInput(f"unit {unit.name}", expected="at least one span of a take", seen="none")
         owned[u] = np.ones(len(ch.PARTS), dtype=bool) if unit.layer == "posture" else _owned(unit)
         frame[u], contact[u] = _contacts(unit)
-        spans = [_span_rows(library, unit, v) for v in unit.variants]
+        spans = [_span_rows(library, takes, unit, v) for v in unit.variants]
+        spans[0] = rw.align_to(spans[0], rw.REST_ROW)
         spans = [rw.align_to(rows, spans[0].mean(axis=0)) for rows in spans]
         if unit.layer == "posture":
             spans = [rw.seamless_loop(rows) for rows in spans]
@@ -145,7 +147,7 @@ def _contacts(unit: MotionUnit) -> tuple[NDArray[np.intp], Bools]:
     return frame, declared
 
 
-def _span_rows(library: UnitLibrary, unit: MotionUnit, variant: Variant) -> Floats:
+def _span_rows(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: MotionUnit, variant: Variant) -> Floats:
     """The variant's frames as rows at FPS: a posture's clean stretch, another unit's whole span."""
     take = library.clips.get(variant.take)
     if take is None:
@@ -159,8 +161,9 @@ def _span_rows(library: UnitLibrary, unit: MotionUnit, variant: Variant) -> Floa
     if high - low < 2:
         low = max(high - 2, 0)
     frames = slice(low, high)
-    names = [ch.CONTACT_FRAMES[i] for i in _contacts(unit)[0]]
-    rows = rw.make_rows(take.rotation[frames], take.root[frames], (names[0], names[1]))
+    if variant.take not in takes:
+        takes[variant.take] = rw.take_rows(take.rotation, take.root)
+    rows = takes[variant.take].span(frames, _contacts(unit)[0])
     wanted = max(round((high - low) * take.frame_time_s * FPS), _POSTURE_MIN_FRAMES if posture else 4)
     return rows if wanted == len(rows) else rw.resample(rows, wanted)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,17 +11,18 @@ from scipy.ndimage import uniform_filter1d
 
 from game.animation import channels as ch
 from game.core import quaternion as quat
-from game.core.humanoid import REFERENCE
+from game.core.humanoid import PART_JOINTS, REFERENCE
 
 __all__ = [
     "CROSSFADE_FRAMES",
     "REST_ROW",
+    "TakeRows",
     "additive_rows",
     "align_to",
-    "make_rows",
     "period_of",
     "resample",
     "seamless_loop",
+    "take_rows",
 ]
 
 Floats = NDArray[np.floating[Any]]
@@ -29,63 +31,77 @@ Rows = NDArray[np.floating[Any]]
 CROSSFADE_FRAMES = 30
 """Frames over which a looped span's end melts into its start, at most a third of the span."""
 
+REPEATS = 0.12
+"""A movement is periodic when it differs from itself a period later by less than this share of its energy."""
+
 _INDEX = REFERENCE.index
 _SIDES = ("left", "right")
 _WRISTS = [_INDEX[f"{s}Hand"] for s in _SIDES]
-_FRAME_JOINTS = {"head": _INDEX["head"], "chest": _INDEX["chest"], "hips": _INDEX["hips"]}
+_LEGS = [_INDEX[name] for name in PART_JOINTS["legs"]]
 
 
-def make_rows(rotation: Floats, root: Floats, frames: tuple[str, str]) -> Rows:
-    """rotation (F, 41, 4) local, root (F, 3) -> (F, CHANNELS).
+@dataclass(frozen=True, eq=False)
+class TakeRows:
+    """A whole take. base: (F, CHANNELS) without the hands' places; wrist: (F, 4, 2, 3) and palm: (F, 4, 2, 4) of both
+    hands in each of CONTACT_FRAMES."""
 
-    frames: the contact frame of the left and of the right hand.
+    base: Rows
+    wrist: Rows
+    palm: Rows
+
+    def span(self, frames: slice, hands: NDArray[np.intp]) -> Rows:
+        """Rows of some frames; hands: (2,) contact frame of the left and of the right hand."""
+        rows = self.base[frames].copy()
+        both = np.arange(2)
+        rows[:, ch.WRIST] = self.wrist[frames][:, hands, both].reshape(len(rows), -1)
+        rows[:, ch.PALM] = self.palm[frames][:, hands, both].reshape(len(rows), -1)
+        return rows
+
+
+def take_rows(rotation: Floats, root: Floats) -> TakeRows:
+    """rotation (F, 41, 4) local, root (F, 3): a take's frames in every space a unit may need them in.
+
+    The legs are left straight: they follow from hips and planted feet, and a take's own may turn over when it ducks.
     """
     count = len(rotation)
+    rotation = rotation.copy()
+    rotation[:, _LEGS] = quat.IDENTITY
     shift = np.broadcast_to(REFERENCE.rest_translation.astype(rotation.dtype), (count, ch.JOINTS, 3)).copy()
     shift[:, 0] = root
     position, turned = REFERENCE.to_model(rotation, shift)
-    rows = np.empty((count, ch.CHANNELS), dtype=np.float32)
-    rows[:, ch.ROTATION] = _continuous(rotation).reshape(count, -1)
-    rows[:, ch.ROOT] = root
-    wrist = np.empty((count, 2, 3))
-    palm = np.empty((count, 2, 4))
-    points = np.empty((count, 2, ch.POINTS_PER_HAND, 3))
-    for hand, side in enumerate(_SIDES):
-        place, turn = position[:, _WRISTS[hand]], turned[:, _WRISTS[hand]]
-        points[:, hand] = _points_in_hand(side, position, turned, place, turn)
-        if frames[hand] != "table":
-            joint = _FRAME_JOINTS[frames[hand]]
-            back = quat.conjugate(turned[:, joint])
-            place = quat.rotate(back, place - position[:, joint])
-            turn = quat.multiply(back, turn)
-        wrist[:, hand], palm[:, hand] = place, turn
-    rows[:, ch.WRIST] = wrist.reshape(count, -1)
-    rows[:, ch.PALM] = _continuous(palm).reshape(count, -1)
-    rows[:, ch.POINTS] = points.reshape(count, -1)
-    return rows
+    base = np.zeros((count, ch.CHANNELS), dtype=np.float32)
+    base[:, ch.ROTATION] = _continuous(rotation).reshape(count, -1)
+    base[:, ch.ROOT] = root
+    points = np.stack([_points_in_hand(side, position, turned) for side in _SIDES], axis=1)
+    base[:, ch.POINTS] = points.reshape(count, -1)
+    wrist = np.empty((count, len(ch.CONTACT_FRAMES), 2, 3), dtype=np.float32)
+    palm = np.empty((count, len(ch.CONTACT_FRAMES), 2, 4), dtype=np.float32)
+    place, turn = position[:, _WRISTS], turned[:, _WRISTS]
+    wrist[:, 0], palm[:, 0] = place, turn
+    for index, name in enumerate(ch.CONTACT_FRAMES[1:], 1):
+        joint = _INDEX[name]
+        back = quat.conjugate(turned[:, joint, None])
+        wrist[:, index] = quat.rotate(back, place - position[:, joint, None])
+        palm[:, index] = quat.multiply(back, turn)
+    return TakeRows(base, wrist, _continuous(palm.reshape(count, -1, 4)).reshape(palm.shape))
 
 
-def _points_in_hand(side: str, position: Floats, turned: Floats, wrist: Floats, turn: Floats) -> Floats:
+def _points_in_hand(side: str, position: Floats, turned: Floats) -> Floats:
     """(F, 4, 3) middle knuckle and the tips of middle, index and little finger, in the hand's frame."""
-    found = [position[:, _INDEX[f"{side}MiddleIntermediate"]]]
-    for finger in ("Middle", "Index", "Little"):
-        joint = _INDEX[f"{side}{finger}Intermediate"]
-        along = REFERENCE.rest_translation[joint].astype(turned.dtype)
-        found.append(
-            position[:, joint] + quat.rotate(turned[:, joint], np.broadcast_to(along, position[:, joint].shape))
-        )
-    points = np.stack(found, axis=1) - wrist[:, None]
-    return quat.rotate(quat.conjugate(turn)[:, None], points)
+    hand = _INDEX[f"{side}Hand"]
+    joints = [_INDEX[f"{side}{finger}Intermediate"] for finger in ("Middle", "Index", "Little")]
+    along = REFERENCE.rest_translation[joints].astype(turned.dtype)
+    tips = position[:, joints] + quat.rotate(turned[:, joints], np.broadcast_to(along, (len(position), 3, 3)))
+    points = np.concatenate([position[:, joints[:1]], tips], axis=1) - position[:, hand, None]
+    return quat.rotate(quat.conjugate(turned[:, hand, None]), points)
 
 
 def _continuous(q: Floats) -> Floats:
-    """Signs of (F, J, 4) chosen so that neighbouring frames, then the mean and the identity, share a hemisphere."""
+    """Signs of (F, J, 4) chosen so that neighbouring frames share a hemisphere."""
     dots = (q[1:] * q[:-1]).sum(-1)
     signs = np.ones((*q.shape[:2], 1), dtype=q.dtype)
     signs[1:, :, 0] = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
-    q = q * signs
-    mean_w = q[..., 3].mean(axis=0)
-    return np.asarray(q * np.where(mean_w < 0.0, -1.0, 1.0)[None, :, None])
+    return np.asarray(q * signs)
 
 
 def _unit(rows: Rows) -> Rows:
@@ -182,24 +198,21 @@ def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
     energy = float((moving * moving).mean())
     if energy < 1e-6:
         return None
-    best: tuple[float, int] | None = None
-    for lag in range(4, room // 2 + 1):
-        difference = moving[lag:] - moving[:-lag]
-        mismatch = float((difference * difference).mean()) / (2.0 * energy)
-        if best is not None and mismatch > best[0] + 0.25:
-            break
-        if best is None or mismatch < best[0]:
-            best = (mismatch, lag)
-    if best is None or best[0] > 0.12:
+    lags = np.arange(4, room // 2 + 1)
+    mismatch = np.array([float(np.square(moving[lag:] - moving[:-lag]).mean()) for lag in lags]) / (2.0 * energy)
+    near = np.flatnonzero(mismatch < min(1.5 * float(mismatch.min()) + 0.02, REPEATS))
+    if near.size == 0:
         return None
-    period = best[1]
+    # The first stretch of good lags is the period itself, later ones its multiples.
+    first = near[: np.argmax(np.diff(near, append=near[-1] + 2) > 1) + 1]
+    period = int(lags[first[np.argmin(mismatch[first])]])
     whole = max((room - 1) // period, 1) * period
     ends = [float(np.square(moving[first + whole] - moving[first]).sum()) for first in range(max(room - whole, 1))]
     return start + int(np.argmin(ends)), whole
 
 
-REST_ROW: Rows = make_rows(
-    np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (1, ch.JOINTS, 1)), REFERENCE.rest_translation[:1], ("chest", "chest")
-)[0]
+REST_ROW: Rows = take_rows(
+    np.tile(np.array([0.0, 0.0, 0.0, 1.0]), (1, ch.JOINTS, 1)), REFERENCE.rest_translation[:1]
+).span(slice(None), np.array([0, 0]))[0]
 """The T-pose as a row."""
 REST_ROW.setflags(write=False)
