@@ -43,7 +43,9 @@ def _draw_ring(
     place = {}
     for i, candidate in enumerate(ordered):
         angle = 2 * pi * i / len(ordered) - pi / 2
-        place[candidate.unit] = (centre[0] + radius * cos(angle), centre[1] + radius * sin(angle))
+        # Large networks are drawn as two rings, so that their numbers stay apart.
+        r = radius * (1.12 if i % 2 == 0 else 0.84) if len(ordered) > 20 else radius
+        place[candidate.unit] = (centre[0] + r * cos(angle), centre[1] + r * sin(angle))
     running = candidates[0]
     strongest = max((c.score for c in candidates), default=0.0)
     start = np.array(place[running.unit])
@@ -59,7 +61,7 @@ def _draw_ring(
         if rank < 2:
             canvas.dot(x, y, 12 if rank == 0 else 9, PALETTE["white"] if rank == 0 else fade(PALETTE["white"], 0.6))
             canvas.dot(x, y, 9 if rank == 0 else 7, colour)
-        canvas.text(x, y - 8, str(candidate.unit), 12, PALETTE["white"], font="bold", align="center")
+        canvas.text(x, y - 8, str(candidate.unit), 11, PALETTE["white"], font="bold", align="center")
 
 
 def _draw_table(session: Session, canvas: Canvas, pair: list[Candidate], room: Rect) -> None:

@@ -123,8 +123,9 @@ class TalkScreen:
             box.x + 190, box.y + 41, s("round", round=done, rounds=rounds), 16, PALETTE["faint"], align="center"
         )
         right = box.x + box.w - 16
-        canvas.text(right, box.y + 7, s("asking"), 14, PALETTE["faint"], align="right")
-        ask = yen(ask_money(talk.list_price, talk.bargain.ask))
+        paid = talk.deal_price > 0
+        canvas.text(right, box.y + 7, s("paid_price" if paid else "asking"), 14, PALETTE["faint"], align="right")
+        ask = yen(talk.deal_price if paid else ask_money(talk.list_price, talk.bargain.ask))
         canvas.text(right, box.y + 24, ask, 31, PALETTE["red"], font="title", align="right")
 
     def _draw_choices(self, session: Session, canvas: Canvas) -> None:
@@ -155,19 +156,21 @@ class TalkScreen:
         standing = [c for c in options if c.act in STANDING]
         width = (CARD_WIDTH - 8 * (len(standing) - 1)) / max(len(standing), 1)
         for i, choice in enumerate(standing):
-            buttons.append(
-                Button(
-                    choice.id,
-                    self._label(session, choice),
-                    Rect(left + i * (width + 8), y, width, 44),
-                    enabled=choice.available,
-                    key=STANDING[choice.act],
-                    size=15,
-                )
-            )
+            place = Rect(left + i * (width + 8), y, width, 44)
+            key = STANDING[choice.act]
+            buttons.append(Button(choice.id, s(choice.act), place, enabled=choice.available, key=key, size=17))
         self._buttons.lay(buttons)
         self._buttons.draw(canvas)
-        canvas.text(canvas.width - 20, canvas.height - 24, s("hint_talk"), 12.5, PALETTE["white"], align="right")
+        # What a short button will say, in full, before it is said.
+        focused = next((c for c in standing if c.id == self._buttons.focus), None)
+        if focused is not None:
+            words = Rect(left, y + 50, CARD_WIDTH, 42)
+            canvas.panel(words, fade(PALETTE["shade"], 1.2), radius=12)
+            room = Rect(left + 14, y + 54, CARD_WIDTH - 28, 36)
+            canvas.paragraph(room, self._shown(focused, s.language), 16, PALETTE["white"], middle=True)
+        hint = Rect(left, canvas.height - 62, CARD_WIDTH, 46)
+        canvas.panel(hint, fade(PALETTE["shade"], 0.8), radius=12)
+        canvas.paragraph(Rect(left + 12, canvas.height - 58, CARD_WIDTH - 24, 40), s("hint_talk"), 13, PALETTE["white"])
 
     def _dial(self, session: Session, canvas: Canvas, left: float, y: float) -> list[Button]:
         s = session.strings
@@ -178,14 +181,11 @@ class TalkScreen:
             Button("less", "−", Rect(left, y, 44, 48), size=24),
             Button("dial", text, Rect(left + 50, y, CARD_WIDTH - 168, 48), key="o", size=17),
             Button("more", "+", Rect(left + CARD_WIDTH - 112, y, 44, 48), size=24),
-            Button("meet", s("asking"), Rect(left + CARD_WIDTH - 62, y, 62, 48), key="p", size=14),
+            Button("meet", s("meet"), Rect(left + CARD_WIDTH - 62, y, 62, 48), key="p", size=14),
         ]
 
     def _shown(self, choice: StoryChoice, language: str) -> str:
         return choice.text(language).replace("{offer}", yen(self._amount))
-
-    def _label(self, session: Session, choice: StoryChoice) -> str:
-        return self._shown(choice, session.strings.language)
 
     def _draw_subtitles(self, session: Session, canvas: Canvas) -> None:
         world, s = session.world, session.strings
@@ -216,4 +216,5 @@ class TalkScreen:
         canvas.paragraph(Rect(box.x + 28, box.y + 22, box.w - 70, 86), text, 24, colour, shown=shown)
         if not resting or world.over:
             beat = 0.5 + 0.5 * abs((world.time_s * 1.4) % 2.0 - 1.0)
-            canvas.text(box.x + box.w - 24, box.y + 84, "▸", 22, fade(PALETTE["red"], beat), align="right")
+            x, y = box.x + box.w - 40, box.y + 88 + 4 * beat
+            canvas.lines([(x, y), (x + 9, y + 9), (x + 18, y)], 4, PALETTE["red"])

@@ -51,15 +51,16 @@ class TitleScreen:
     def draw(self, session: Session, canvas: Canvas) -> None:
         s = session.strings
         left, width = 64.0, 320.0
-        canvas.panel(Rect(40, 150, 470, 160), fade(PALETTE["shade"], 0.62), radius=26)
+        canvas.panel(Rect(40, 140, 470, 168), fade(PALETTE["shade"], 0.9), radius=26)
         title = s("title")
-        size = 52.0
-        while canvas.measure(title, size, "title") > 440 and " " not in title:
-            size -= 2
         rows = title.rsplit(" ", 1) if " " in title else [title]
+        size = 48.0
+        while max(canvas.measure(row, size, "title") for row in rows) > 420:
+            size -= 1
+        top = 158 if len(rows) > 1 else 190
         for i, row in enumerate(rows):
-            canvas.text(left, 166 + i * 52, row, size if len(rows) == 1 else 44, PALETTE["white"], font="title")
-        canvas.text(left, 272, s("subtitle"), 17, fade(PALETTE["paper_warm"], 0.98))
+            canvas.text(left, top + i * size * 1.1, row, size, PALETTE["white"], font="title")
+        canvas.text(left, 268, s("subtitle"), 17, fade(PALETTE["paper_warm"], 0.98))
         entries = ["play"]
         if session.world.talk is not None or session.afternoon.visits:
             entries.insert(0, "continue")
