@@ -23,6 +23,7 @@ from game.render.model import (
     StaticMesh,
     merge_character,
     merge_static,
+    on_legs,
 )
 
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
@@ -47,7 +48,7 @@ def load_character(vrm: Path) -> CharacterModel:
         for node, extras in _mesh_nodes(file):
             primitives = _primitives(file, node)
             if extras.get("shadow"):
-                shadow = _shadow_mesh(primitives[0])
+                shadow = _shadow_mesh(primitives[0], legs)
             else:
                 parts = [_part(file, primitive, "body") for primitive in primitives]
                 meshes[int(extras.get("lod", 40_000))] = merge_character(parts, joint_count, legs)
@@ -153,15 +154,15 @@ def _weight_bytes(weight: NDArray[np.float32]) -> NDArray[np.uint8]:
     return np.asarray(whole, dtype=np.uint8)
 
 
-def _shadow_mesh(primitive: GltfPrimitive) -> ShadowMesh:
+def _shadow_mesh(primitive: GltfPrimitive, legs: list[int]) -> ShadowMesh:
     attributes = primitive.attributes
     if primitive.indices is None:
         raise BadInput("shadow mesh", expected="indices", seen="none")
     position = _floats(attributes["POSITION"])
-    return ShadowMesh(
-        position,
-        attributes["JOINTS_0"].astype(np.uint8),
-        _weight_bytes(attributes["WEIGHTS_0"]),
-        _floats(attributes.get("_PUSH", np.zeros(len(position)))),
-        primitive.indices.reshape(-1, 3).astype(np.int32),
-    )
+    joint = attributes["JOINTS_0"].astype(np.uint8)
+    weight = _weight_bytes(attributes["WEIGHTS_0"])
+    triangle = primitive.indices.reshape(-1, 3).astype(np.int32)
+    leg = on_legs(triangle, joint, weight, legs)
+    push = _floats(attributes.get("_PUSH", np.zeros(len(position))))
+    ordered = np.concatenate([triangle[~leg], triangle[leg]])
+    return ShadowMesh(position, joint, weight, push, ordered, int(np.count_nonzero(~leg)))

@@ -144,6 +144,7 @@ class CharacterDrawing(Owner):
 
     def _make_shadow(self, device: Device, mesh: ShadowMesh, level: Level) -> None:
         context = device.context
+        self._shadow_triangles, self._shadow_above = len(mesh.triangle), mesh.above
         program = self.own(device.program("shadow_character.vert.glsl", "empty.frag.glsl"))
         place = self._buffer(np.hstack([mesh.position, mesh.push[:, None]]).astype(np.float32))
         bones = self._buffer(np.hstack([mesh.joint, mesh.weight]))
@@ -204,7 +205,7 @@ class CharacterDrawing(Owner):
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         context.depth_func = "<"
         context.cull_face = "front"
-        self._caster.render()
+        self._caster.render(vertices=3 * (self._shadow_triangles if self._whole else self._shadow_above))
         context.cull_face = "back"
 
     def draw(self, face: moderngl.Texture) -> None:

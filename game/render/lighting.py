@@ -18,7 +18,7 @@ def _unit(x: float, y: float, z: float) -> NDArray[np.float64]:
     return np.asarray(v / np.linalg.norm(v))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Lights:
     """Directions toward the sun and the two back lights, unit vectors."""
 
@@ -50,7 +50,7 @@ class LightBox:
 
 STALL_LIGHT = LightBox((0.0, 0.95, 0.1), 1.25, 0.9, 2.4, 5.6, 0.0)  # everything that stands still
 TABLE_LIGHT = LightBox((0.03, 0.93, 0.08), 0.62, 0.62, 2.9, 5.1, 0.0012)  # the upper body behind the table
-STUDIO_LIGHT = LightBox((0.0, 0.70, 0.0), 0.95, 0.95, 2.6, 5.4, 0.0012)  # the whole person
+STUDIO_LIGHT = LightBox((0.0, 0.70, 0.0), 0.95, 0.95, 2.6, 6.2, 0.0010)  # the whole person
 
 
 class FrameBlock(Owner):
@@ -62,6 +62,8 @@ class FrameBlock(Owner):
     def __init__(self, device: Device) -> None:
         super().__init__()
         self._buffer = self.own(device.context.buffer(reserve=224, dynamic=True))
+        self._written: tuple[object, ...] = ()
+        self._world_to_clip = np.eye(4)
 
     def write(
         self,
@@ -75,6 +77,10 @@ class FrameBlock(Owner):
 
         ``line_px`` is the outline width of a picture 720 pixels high.
         """
+        self._buffer.bind_to_uniform_block(0)
+        if self._written == (camera, lights, box, size, line_px):
+            return self._world_to_clip
+        self._written = (camera, lights, box, size, line_px)
         width, height = size
         aspect = width / height
         projection = camera.projection(aspect)
@@ -88,5 +94,5 @@ class FrameBlock(Owner):
         rows[12] = (width, height, line_px * scale, self.FEATHER_PX * max(1.0, scale**0.5))
         rows[13] = (projection[2, 3], -projection[2, 2], box.bias, self.HEAD_PUSH_M)
         self._buffer.write(rows)
-        self._buffer.bind_to_uniform_block(0)
+        self._world_to_clip = world_to_clip
         return world_to_clip

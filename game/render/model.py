@@ -27,6 +27,7 @@ __all__ = [
     "joint_boxes",
     "merge_character",
     "merge_static",
+    "on_legs",
 ]
 
 Floats = NDArray[np.float32]
@@ -106,7 +107,8 @@ class ShadowMesh:
     joint: NDArray[np.uint8]
     weight: NDArray[np.uint8]
     push: Floats  # (v,) 1 on the head
-    triangle: NDArray[np.int32]
+    triangle: NDArray[np.int32]  # (t, 3), those of the legs last
+    above: int  # triangles before those of the legs
 
 
 @dataclass(frozen=True)
@@ -191,7 +193,7 @@ def merge_character(parts: Sequence[Part], joint_count: int, leg_joints: Sequenc
     position = np.concatenate([p.position for p in parts])
     triangle, runs = _join(parts)
     kind = np.repeat([KINDS.index(run.kind) for run in runs], [run.count // 3 for run in runs])
-    leg = (np.where(np.isin(joint, leg_joints), weight, 0).sum(axis=1) > 250)[triangle].all(axis=1)
+    leg = on_legs(triangle, joint, weight, leg_joints)
     # Frontmost triangles first: what they cover is rejected by depth before it is shaded.
     triangle = triangle[np.lexsort((-position[triangle, 2].sum(axis=1), kind, leg))]
     runs = _leg_runs(kind, leg)
@@ -246,6 +248,15 @@ def _leg_runs(kind: NDArray[np.int_], leg: NDArray[np.bool_]) -> tuple[Run, ...]
                 runs.append(Run(group, name, first, count))
                 first += count
     return tuple(runs)
+
+
+def on_legs(
+    triangle: NDArray[np.int32], joint: NDArray[np.uint8], weight: NDArray[np.uint8], leg_joints: Sequence[int]
+) -> NDArray[np.bool_]:
+    """(t,) bool: triangles that follow the leg joints alone."""
+    on_leg = np.where(np.isin(joint, leg_joints), weight, 0).sum(axis=1) > 250
+    result: NDArray[np.bool_] = on_leg[triangle].all(axis=1)
+    return result
 
 
 def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float, float]]) -> StaticMesh:

@@ -71,9 +71,12 @@ class SilhouetteFinder:
         w = 1.0 / clip[:, 3]
         x, y = clip[:, 0] * w, clip[:, 1] * w
         a, b, c = self._corners
-        xa, ya = x.take(a), y.take(a)
-        front = np.empty(len(a) + 1, bool)
-        np.greater((x.take(b) - xa) * (y.take(c) - ya), (y.take(b) - ya) * (x.take(c) - xa), out=front[:-1])
-        front[-1] = False
-        rows: NDArray[np.int32] = self._adjacency[front.take(self._one) != front.take(self._other)]
+        # mode="clip" spares NumPy a copy of the numbers, all of which are in range.
+        xa, ya = x.take(a, mode="clip"), y.take(a, mode="clip")
+        area = (x.take(b, mode="clip") - xa) * (y.take(c, mode="clip") - ya)
+        area -= (y.take(b, mode="clip") - ya) * (x.take(c, mode="clip") - xa)
+        front = np.zeros(len(a) + 1, bool)
+        np.greater(area, 0.0, out=front[:-1])
+        silhouette = front.take(self._one, mode="clip") != front.take(self._other, mode="clip")
+        rows: NDArray[np.int32] = self._adjacency.compress(silhouette, axis=0)
         return rows

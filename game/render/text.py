@@ -43,6 +43,7 @@ _JAPANESE = (
     "sourcehansansjpregular",
     "mplus1pregular",
 )
+_WRAPPED = 256  # paragraphs whose line breaks are remembered
 _UNASSIGNED = "\u0378"  # a code point without a character: fonts draw their box for unknown ones
 
 
@@ -110,6 +111,7 @@ class FontSet:
         self._files = {role: tuple(paths) for role, paths in files.items()}
         self._fonts: dict[tuple[Path, int], pygame.font.Font] = {}
         self._unknown: dict[Path, bytes] = {}
+        self._wrapped: dict[tuple[str, str, int, float], list[str]] = {}
         self._choice: dict[tuple[str, str], Path | None] = {}
 
     @classmethod
@@ -196,6 +198,14 @@ class FontSet:
     def wrap(self, text: str, role: str, size_px: int, width_px: float) -> list[str]:
         """Break a paragraph into lines of at most ``width_px``; Japanese breaks between any two characters but not
         before closing punctuation."""
+        key = (text, role, size_px, width_px)
+        if key not in self._wrapped:
+            if len(self._wrapped) >= _WRAPPED:
+                self._wrapped.clear()
+            self._wrapped[key] = self._wrap(text, role, size_px, width_px)
+        return list(self._wrapped[key])
+
+    def _wrap(self, text: str, role: str, size_px: int, width_px: float) -> list[str]:
         lines: list[str] = []
         for paragraph in text.split("\n"):
             line = ""

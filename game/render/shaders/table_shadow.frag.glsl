@@ -5,6 +5,5 @@ uniform sampler2D dark_picture;
 out vec4 colour;
 void main() {
     float dark = 1.0 - sunlight(v_shadow - vec3(0, 0, 0.002));
-    if (dark <= 0.0) discard;
     colour = vec4(texelFetch(dark_picture, ivec2(gl_FragCoord.xy), 0).rgb * dark, dark);
 }
