@@ -28,7 +28,7 @@ from game.tools.modelling.mesh import Mesh, split_at_level
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
 from game.tools.modelling.spec import ClothesSpec, SpringSpec
-from game.tools.modelling.surface import sculpted
+from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Clothes"]
@@ -42,28 +42,26 @@ Weigh = Callable[[Floats], Floats]
 
 
 class Clothes:
-    """Fields and fine triangulations of the upper clothes; ``parts`` takes meshes from them."""
+    """Fields of the upper clothes; ``parts`` takes meshes from them."""
 
     def __init__(self, spec: ClothesSpec, anatomy: Anatomy, tail_spring: SpringSpec) -> None:
         self.spec = spec
         self.anatomy = anatomy
-        trunk = anatomy.trunk
         s = spec
-        self._shirt = sculpted(self._shirt_field, (-0.2, 0.50, -0.15), (0.2, 1.0, 0.15), 0.006)
-        self._apron = sculpted(self._apron_field, (-0.19, s.apron_hem - 0.02, -0.02), (0.19, 0.90, 0.17), 0.004, 3e-3)
-        self._pocket = sculpted(self._pocket_field, (-0.07, 0.70, 0.04), (0.07, 0.82, 0.16), 0.003)
+        self._shirt = Sculpt(self._shirt_field, (-0.2, 0.50, -0.15), (0.2, 1.0, 0.15), 0.006)
+        self._apron = Sculpt(self._apron_field, (-0.19, s.apron_hem - 0.02, -0.02), (0.19, 0.90, 0.17), 0.004, 3e-3)
+        self._pocket = Sculpt(self._pocket_field, (-0.07, 0.70, 0.04), (0.07, 0.82, 0.16), 0.003)
         self._badge_at, self._badge_out = self._on_front(np.array([0.0]), np.array([0.752]), 0.0215)
-        self._badge = sculpted(self._badge_field, self._badge_at[0] - 0.03, self._badge_at[0] + 0.03, 0.0014)
-        self._coat = sculpted(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.23), (0.36, 1.02, 0.23), 0.0042, 9e-3)
-        self._scarf = sculpted(self._scarf_field, (-0.12, 0.84, -0.12), (0.12, 1.04, 0.15), 0.0035)
-        self._sleeve = sculpted(self._sleeve_field, (0.05, 0.50, -0.10), (0.46, 1.02, 0.10), 0.0045, 5e-3)
-        self._cuff = sculpted(self._cuff_field, (0.18, 0.55, -0.10), (0.46, 0.85, 0.10), 0.004)
+        self._badge = Sculpt(self._badge_field, self._badge_at[0] - 0.03, self._badge_at[0] + 0.03, 0.0014)
+        self._coat = Sculpt(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.23), (0.36, 1.02, 0.23), 0.0042, 9e-3)
+        self._scarf = Sculpt(self._scarf_field, (-0.12, 0.84, -0.12), (0.12, 1.04, 0.15), 0.0035)
+        self._sleeve = Sculpt(self._sleeve_field, (0.05, 0.50, -0.10), (0.46, 1.02, 0.10), 0.0045, 5e-3)
+        self._cuff = Sculpt(self._cuff_field, (0.18, 0.55, -0.10), (0.46, 0.85, 0.10), 0.004)
         self._lapel_path, self._lapel_out = self._lapel_line()
         self.tails = (
             self._tail("scarf_right", (-0.026, 0.872, 0.110), tail_spring),
             self._tail("scarf_left", (0.048, 0.880, 0.106), tail_spring),
         )
-        self._trunk = trunk
 
     # --- fields ------------------------------------------------------------------------------------------------
     def _shirt_field(self, p: Floats) -> Floats:

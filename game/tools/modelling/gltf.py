@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from game.tools.modelling.spec import Swatch
 
-__all__ = ["Gltf", "linear_rgb", "material_json", "srgb"]
+__all__ = ["Gltf", "linear_rgb", "material_json", "srgb", "unit_normals"]
 
 _GENERATOR = "mental-communication-game modelling"
 _COMPONENT = {"float32": 5126, "uint8": 5121, "uint16": 5123, "uint32": 5125}
@@ -146,3 +146,9 @@ def material_json(name: str, swatch: Swatch, *, toon: bool) -> dict[str, Any]:
             }
         }
     return material
+
+
+def unit_normals(normal: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(n, 3) float32 of length 1, as glTF demands; one without direction (the pole of a lathe) points up."""
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    return np.where(length > 1e-6, normal / np.maximum(length, 1e-6), (0.0, 1.0, 0.0)).astype(np.float32)

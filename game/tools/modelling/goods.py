@@ -22,7 +22,7 @@ from game.tools.modelling.fields import (
 from game.tools.modelling.lofts import lathe, loft, rounded_box, smooth_curve
 from game.tools.modelling.mesh import Mesh, joined, split_at_level
 from game.tools.modelling.parts import Part
-from game.tools.modelling.surface import sculpted
+from game.tools.modelling.surface import Sculpt
 
 __all__ = ["GOODS", "Good", "stroke", "turned"]
 
@@ -36,7 +36,7 @@ def _part(name: str, material: str, mesh: Mesh, outline: float = 0.9) -> Part:
 def _solid(
     field: Field, low: tuple[float, float, float], high: tuple[float, float, float], cell: float, count: int
 ) -> Mesh:
-    return sculpted(field, low, high, cell).mesh(count)
+    return Sculpt(field, low, high, cell).mesh(count)
 
 
 def _standing(field: Field) -> Field:

@@ -12,7 +12,7 @@ from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
 from game.tools.modelling.spec import ClumpSpec, HairSpec, SpringSpec, TuftSpec
-from game.tools.modelling.surface import sculpted
+from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Hair"]
@@ -31,7 +31,7 @@ class Hair:
         self.centre = head_centre + np.asarray(spec.centre)
         self.radii = np.asarray(spec.radii)
         reach = 0.24
-        self._cap = sculpted(
+        self._cap = Sculpt(
             self._cap_field(), head_centre - (reach, 0.22, reach), head_centre + (reach, 0.24, reach), 0.006
         )
         self.chains = {

@@ -11,7 +11,7 @@ from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
 from game.tools.modelling.spec import BandSpec, SpringSpec
-from game.tools.modelling.surface import sculpted
+from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Headband"]
@@ -38,7 +38,7 @@ class Headband:
         self._outward = np.array([np.sin(azimuth) * np.sin(polar), np.cos(polar), np.cos(azimuth) * np.sin(polar)])
         self.knot = hair.centre + self._outward * (self._reach(self._outward[None], 0.10)[0] + 0.012)
         knot_field = ellipsoid(self.knot + self._outward * 0.004, np.array([0.024, 0.021, 0.021]) * spec.bow_scale)
-        self._knot_sculpt = sculpted(knot_field, self.knot - 0.05, self.knot + 0.05, 0.0032)
+        self._knot_sculpt = Sculpt(knot_field, self.knot - 0.05, self.knot + 0.05, 0.0032)
         self.chains = {name: self._chain(name, spring) for name in _LEAVES}
 
     def _reach(self, directions: Floats, cone_rad: float) -> Floats:

@@ -19,7 +19,7 @@ from game.tools.modelling.fields import (
 from game.tools.modelling.mesh import split_at_level
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.spec import ClothesSpec
-from game.tools.modelling.surface import sculpted
+from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Legwear"]
@@ -38,11 +38,11 @@ class Legwear:
             joint_at(f"left{n}") for n in ("UpperLeg", "LowerLeg", "Foot", "Toes")
         )
         hem, top = spec.trouser_hem, spec.sock_top
-        self._trousers = sculpted(self._trouser_field, (-0.19, hem - 0.02, -0.14), (0.19, 0.62, 0.14), 0.0048, 3e-3)
-        self._calf = sculpted(self._calf_field, (0.0, top - 0.04, -0.08), (0.14, hem + 0.08, 0.08), 0.0045)
-        self._sock = sculpted(self._sock_field, (0.0, 0.02, -0.09), (0.14, top + 0.03, 0.09), 0.004)
-        self._shoe = sculpted(self._shoe_field(), (0.0, -0.01, -0.09), (0.15, 0.12, 0.15), 0.0038)
-        self._sole = sculpted(self._sole_field(), (0.0, -0.01, -0.09), (0.15, 0.04, 0.15), 0.0038)
+        self._trousers = Sculpt(self._trouser_field, (-0.19, hem - 0.02, -0.14), (0.19, 0.62, 0.14), 0.0048, 3e-3)
+        self._calf = Sculpt(self._calf_field, (0.0, top - 0.04, -0.08), (0.14, hem + 0.08, 0.08), 0.0045)
+        self._sock = Sculpt(self._sock_field, (0.0, 0.02, -0.09), (0.14, top + 0.03, 0.09), 0.004)
+        self._shoe = Sculpt(self._shoe_field(), (0.0, -0.01, -0.09), (0.15, 0.12, 0.15), 0.0038)
+        self._sole = Sculpt(self._sole_field(), (0.0, -0.01, -0.09), (0.15, 0.04, 0.15), 0.0038)
 
     def _trouser_field(self, p: Floats) -> Floats:
         hem = self.spec.trouser_hem

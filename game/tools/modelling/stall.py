@@ -12,7 +12,7 @@ from game.core.humanoid import TABLE_FRONT_Z_M, TABLE_TOP_M
 from game.formats import Node, load_yaml
 from game.tools.modelling.backdrop import paint_backdrop
 from game.tools.modelling.fields import Floats
-from game.tools.modelling.gltf import Gltf, material_json
+from game.tools.modelling.gltf import Gltf, material_json, unit_normals
 from game.tools.modelling.goods import GOODS, stroke, turned
 from game.tools.modelling.lofts import lathe, loft, rounded_box, sheet
 from game.tools.modelling.mesh import Mesh, joined
@@ -111,12 +111,10 @@ def build_stall(yaml_path: Path, out_dir: Path) -> list[Path]:
                 gltf.materials.append(material_json(material, spec.palette[material], toon=False))
             members = [part for part in parts if part.material == material]
             mesh = joined([part.mesh for part in members])
-            length = np.linalg.norm(mesh.normal, axis=1, keepdims=True)
-            normal = np.where(length > 1e-6, mesh.normal / np.maximum(length, 1e-6), (0.0, 1.0, 0.0))
             outline = np.concatenate([np.full(len(part.mesh.position), part.outline) for part in members])
             attributes = {
                 "POSITION": gltf.vertices(mesh.position.astype(np.float32), bounds=True),
-                "NORMAL": gltf.vertices(normal.astype(np.float32)),
+                "NORMAL": gltf.vertices(unit_normals(mesh.normal)),
                 "_OUTLINE": gltf.vertices(outline.astype(np.float32)),
             }
             indices = gltf.indices(mesh.triangle, len(mesh.position))

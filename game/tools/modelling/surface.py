@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import fast_simplification
 import numpy as np
@@ -12,27 +13,50 @@ from skimage.measure import marching_cubes
 from game.tools.modelling.fields import Field, Floats, Ints, normals, project
 from game.tools.modelling.mesh import Mesh, neighbour_mean
 
-__all__ = ["Sculpt", "sculpted"]
+__all__ = ["Sculpt"]
 
 _BLOCK = 8
 """Cells per block edge: the field is sampled once per block first, and finely only near the surface."""
+_RELAX_ROUNDS = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Sculpt:
-    """A field with its fine triangulation, from which meshes of any triangle count are taken.
+    """A field within a box, from which meshes of any triangle count are taken; triangulated at first use.
 
+    low, high: corners of the box, metres. cell_m: edge of the sampling grid's cells.
     normal_step_m: step of the normals' gradient; wide on cloth, so that folds shade softly.
     """
 
     field: Field
-    position: Floats
-    triangle: Ints
-    normal_step_m: float
+    low: ArrayLike
+    high: ArrayLike
+    cell_m: float
+    normal_step_m: float = 6e-4
+
+    @cached_property
+    def fine(self) -> tuple[Floats, Ints]:
+        """Positions (n, 3) and triangles (m, 3): marched, then evened out on the surface in three rounds."""
+        corner = np.asarray(self.low, dtype=np.float64)
+        grid = _samples(self.field, corner, np.asarray(self.high, dtype=np.float64), self.cell_m)
+        vertices, faces, _, _ = marching_cubes(grid, 0.0)  # type: ignore[no-untyped-call]  # scikit-image has no types
+        position = corner + vertices.astype(np.float64) * self.cell_m
+        triangle: Ints = faces.astype(np.int64)
+        mean = neighbour_mean(len(position), triangle)
+        for _ in range(_RELAX_ROUNDS):
+            normal = normals(self.field, position)
+            move = mean @ position - position
+            position = position + 0.6 * (move - (move * normal).sum(1, keepdims=True) * normal)
+            position = project(self.field, position)
+        corners = position[triangle]
+        facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        if ((facing * normals(self.field, corners.mean(1))).sum(1) > 0).mean() < 0.5:
+            triangle = np.ascontiguousarray(triangle[:, ::-1])
+        return position, triangle
 
     def mesh(self, target: int) -> Mesh:
-        """About ``target`` triangles (all, if the triangulation has fewer), every vertex on the field."""
-        position, triangle = self.position, self.triangle
+        """About ``target`` triangles (all, if the fine triangulation has fewer), every vertex on the field."""
+        position, triangle = self.fine
         if target < len(triangle):
             reduced, faces = fast_simplification.simplify(
                 position.astype(np.float32), triangle.astype(np.int32), target_reduction=1.0 - target / len(triangle)
@@ -59,30 +83,3 @@ def _samples(field: Field, low: Floats, high: Floats, cell_m: float) -> Floats:
         index = (blocks[start : start + 400, None, :] + inside[None]).reshape(-1, 3)
         grid[index[:, 0], index[:, 1], index[:, 2]] = field(low + index * cell_m)
     return np.asarray(grid)
-
-
-def sculpted(
-    field: Field,
-    low: ArrayLike,
-    high: ArrayLike,
-    cell_m: float,
-    normal_step_m: float = 6e-4,
-    relax_rounds: int = 3,
-) -> Sculpt:
-    """March the field between two corners of a box (metres), then even the triangles out on the surface."""
-    corner = np.asarray(low, dtype=np.float64)
-    grid = _samples(field, corner, np.asarray(high, dtype=np.float64), cell_m)
-    vertices, faces, _, _ = marching_cubes(grid, 0.0)  # type: ignore[no-untyped-call]  # scikit-image has no types
-    position = corner + vertices.astype(np.float64) * cell_m
-    triangle = faces.astype(np.int64)
-    mean = neighbour_mean(len(position), triangle)
-    for _ in range(relax_rounds):
-        normal = normals(field, position)
-        move = mean @ position - position
-        position = position + 0.6 * (move - (move * normal).sum(1, keepdims=True) * normal)
-        position = project(field, position)
-    corner_of = position[triangle]
-    facing = np.cross(corner_of[:, 1] - corner_of[:, 0], corner_of[:, 2] - corner_of[:, 0])
-    if ((facing * normals(field, corner_of.mean(1))).sum(1) > 0).mean() < 0.5:
-        triangle = np.ascontiguousarray(triangle[:, ::-1])
-    return Sculpt(field, position, triangle, normal_step_m)

@@ -1,0 +1,168 @@
+"""Writing a character: ``<id>.vrm`` with the finest level of detail, ``<id>.lod.glb`` with the others.
+
+Vertex attributes beyond glTF's own: _OUTLINE (width of the ink line, 0 = none), _FACE (face-texture mask, cast-shadow
+fade), _HAIR (azimuth and height term of the highlight ring), _PUSH (head skin of the shadow mesh).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.tools.modelling.character import Character
+from game.tools.modelling.fields import Floats, smoothstep, unit
+from game.tools.modelling.gltf import Gltf, material_json, unit_normals
+from game.tools.modelling.hair import Hair
+from game.tools.modelling.mesh import Mesh, joined
+from game.tools.modelling.parts import Detail, Part
+from game.tools.modelling.spec import load_character
+from game.tools.modelling.vrm import add_skeleton, humanoid_extension, spring_extension
+
+__all__ = ["LEVELS", "build_character"]
+
+LEVELS: Mapping[int, float] = {40000: 0.43, 25000: 0.250, 15000: 0.133, 8000: 0.067}
+"""Triangles of each level of detail (within a tenth), finest first, and the detail scale that gives them."""
+_FINEST, _SHADOW = max(LEVELS), min(LEVELS)
+
+_FACE_SQUARE_M = 0.340
+"""Edge of the square the face is painted in (ART.md, "Face")."""
+_BLANK_UV = (0.5, 0.02)
+"""A place on the face texture that is never painted."""
+
+
+def build_character(yaml_path: Path, out_dir: Path) -> list[Path]:
+    """Model the character of ``yaml_path`` and write its two files. -> their paths.
+
+    Deterministic: the same bytes on one machine. Raises BadInput where the YAML is wrong.
+    """
+    spec = load_character(yaml_path)
+    character = Character(spec)
+    main, others = Gltf(), Gltf()
+    _write_levels(main, character, [_FINEST], toon=True)
+    _write_levels(others, character, [level for level in LEVELS if level != _FINEST], toon=False)
+    main.root["extensions"] = {
+        "VRMC_vrm": humanoid_extension(spec, character.rig),
+        "VRMC_springBone": spring_extension(main, character.rig),
+    }
+    main.root["extensionsUsed"] = ["VRMC_vrm", "VRMC_springBone", "VRMC_materials_mtoon"]
+    files = [out_dir / f"{spec.id}.vrm", out_dir / f"{spec.id}.lod.glb"]
+    for gltf, file in zip((main, others), files, strict=True):
+        gltf.save(file)
+    return files
+
+
+def _write_levels(gltf: Gltf, character: Character, levels: Sequence[int], *, toon: bool) -> None:
+    """The skeleton, then one mesh node per level; the lowest is the depth-only shadow mesh."""
+    scene = [add_skeleton(gltf, character.rig)]
+    material_of: dict[str, int] = {}
+    for level in levels:
+        parts = character.parts(Detail(LEVELS[level]))
+        extras: dict[str, Any] = {"lod": level}
+        if level == _SHADOW:
+            name, primitives = f"shadow{level // 1000}k", [_shadow_primitive(gltf, parts)]
+            extras["shadow"] = True
+        else:
+            name, primitives = "body" if level == _FINEST else f"lod{level // 1000}k", []
+            for material in dict.fromkeys(part.material for part in parts):
+                if material not in material_of:
+                    material_of[material] = len(gltf.materials)
+                    gltf.materials.append(material_json(material, character.spec.palette[material], toon=toon))
+                primitive = _primitive(gltf, character, [part for part in parts if part.material == material])
+                primitives.append(primitive | {"material": material_of[material]})
+        gltf.meshes.append({"name": name, "primitives": primitives})
+        scene.append(gltf.node(name=name, mesh=len(gltf.meshes) - 1, skin=0, extras=extras))
+    gltf.root["scenes"] = [{"name": character.spec.id, "nodes": scene}]
+
+
+def _primitive(gltf: Gltf, character: Character, parts: Sequence[Part]) -> dict[str, Any]:
+    """One material's parts as a primitive with all vertex attributes of its shading class."""
+    kind = character.spec.palette[parts[0].material].kind
+    extra: dict[str, Floats] = {}
+    if kind == "face":
+        parts, extra = _face_attributes(character, parts)
+    elif kind == "hair":
+        extra = {"_HAIR": np.vstack([_hair_terms(character.hair, part.mesh) for part in parts])}
+    mesh = joined([part.mesh for part in parts])
+    joints, weights = _four_strongest(np.vstack([_weights_of(part) for part in parts]))
+    outline = np.concatenate([np.full(len(part.mesh.position), part.outline) for part in parts])
+    attributes = {
+        "POSITION": gltf.vertices(mesh.position.astype(np.float32), bounds=True),
+        "NORMAL": gltf.vertices(unit_normals(mesh.normal)),
+        "JOINTS_0": gltf.vertices(joints),
+        "WEIGHTS_0": gltf.vertices(weights, normalized=True),
+        "_OUTLINE": gltf.vertices(outline.astype(np.float32)),
+    }
+    for name, values in extra.items():
+        attributes[name] = gltf.vertices(values.astype(np.float32))
+    return {"attributes": attributes, "indices": gltf.indices(mesh.triangle, len(mesh.position))}
+
+
+def _shadow_primitive(gltf: Gltf, parts: Sequence[Part]) -> dict[str, Any]:
+    """Positions and weights only; _PUSH marks the head's skin, which steps back from the light."""
+    parts = [part for part in parts if not part.trim]
+    mesh = joined([part.mesh for part in parts])
+    joints, weights = _four_strongest(np.vstack([_weights_of(part) for part in parts]))
+    push = np.concatenate([np.full(len(part.mesh.position), float(part.name == "head")) for part in parts])
+    attributes = {
+        "POSITION": gltf.vertices(mesh.position.astype(np.float32), bounds=True),
+        "JOINTS_0": gltf.vertices(joints),
+        "WEIGHTS_0": gltf.vertices(weights, normalized=True),
+        "_PUSH": gltf.vertices(push.astype(np.float32)),
+    }
+    return {"attributes": attributes, "indices": gltf.indices(mesh.triangle, len(mesh.position))}
+
+
+def _weights_of(part: Part) -> Floats:
+    assert part.weights is not None
+    return part.weights
+
+
+def _four_strongest(weights: Floats) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """(n, J) weights -> joint indices and weights of 255 (n, 4) uint8; every row of weights sums to 255."""
+    joint = np.argsort(-weights, axis=1, kind="stable")[:, :4]
+    value = np.take_along_axis(weights, joint, 1)
+    value = np.round(value / value.sum(1, keepdims=True) * 255).astype(np.int64)
+    value[:, 0] += 255 - value.sum(1)
+    joint = np.where(value > 0, joint, 0)
+    return joint.astype(np.uint8), value.astype(np.uint8)
+
+
+def _face_attributes(character: Character, parts: Sequence[Part]) -> tuple[list[Part], dict[str, Floats]]:
+    """Head skin: its normals bent to a sphere, the planar face projection, and the two masks of the face shader."""
+    (head,) = parts
+    mesh = head.mesh
+    local = mesh.position - character.anatomy.head_centre
+    ball = unit(local - (0.0, -0.01, -0.09))
+    front = np.clip((local[:, 2] - 0.02) / 0.06, 0, 1) * np.clip((mesh.position[:, 1] - 1.04) / 0.05, 0, 1)
+    normal = unit(mesh.normal * (1 - 0.90 * front[:, None]) + ball * (0.90 * front[:, None]))
+    uv = np.stack([local[:, 0] + 0.170, 0.140 - local[:, 1]], 1) / _FACE_SQUARE_M
+    painted = smoothstep(0.05, 0.25, mesh.normal[:, 2]) * (local[:, 2] > 0.015) * ((uv > 0) & (uv < 1)).all(1)
+    lit = smoothstep(0.045, 0.015, local[:, 1]) * smoothstep(0.02, 0.06, local[:, 2])
+    lit *= smoothstep(-0.175, -0.15, local[:, 1])
+
+    # Triangles off the painted front take their uv from a blank spot, through vertices of their own.
+    blank = ~(painted[mesh.triangle] > 0).any(1)
+    kept, kept_from = Mesh(mesh.position, normal, mesh.triangle).compacted(mesh.triangle[~blank])
+    rest, rest_from = Mesh(mesh.position, normal, mesh.triangle).compacted(mesh.triangle[blank])
+    weights = _weights_of(head)
+    attributes = {
+        "TEXCOORD_0": np.vstack([uv[kept_from], np.tile(_BLANK_UV, (len(rest_from), 1))]),
+        "_FACE": np.stack([painted, lit], 1)[np.r_[kept_from, rest_from]],
+    }
+    both = replace(head, mesh=joined([kept, rest]), weights=weights[np.r_[kept_from, rest_from]])
+    return [both], attributes
+
+
+def _hair_terms(hair: Hair, mesh: Mesh) -> Floats:
+    """(n, 2): azimuth about the skull (unwrapped within the part), and the highlight's height term (ART.md)."""
+    local = mesh.position - hair.centre
+    middle = local.mean(0)
+    centre = np.arctan2(middle[0], middle[2])
+    azimuth = centre + (np.arctan2(local[:, 0], local[:, 2]) - centre + np.pi) % (2 * np.pi) - np.pi
+    skull = unit(local / hair.radii)
+    return np.stack([azimuth, unit(skull * 0.48 + mesh.normal * 0.52)[:, 1]], 1)

@@ -1,0 +1,223 @@
+"""The committed shopkeeper: a valid VRM, bound well, the size she should be, and what the builder still makes."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from game.core.errors import BadInput
+from game.core.humanoid import REFERENCE
+from game.core.paths import ASSETS
+from game.formats import GltfFile, Vrm, read_gltf, read_vrm
+from game.formats.vrm_model import REQUIRED_BONES
+from game.tools.modelling.character import Character
+from game.tools.modelling.export import LEVELS
+from game.tools.modelling.parts import Detail
+from game.tools.modelling.spec import load_character
+from game.tools.modelling.vrm import EXPRESSIONS
+
+FOLDER = ASSETS / "characters"
+NAMES = ["mira"]
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def name(request) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def vrm(name) -> Vrm:
+    return read_vrm(FOLDER / f"{name}.vrm")
+
+
+@pytest.fixture(scope="module")
+def levels(name) -> GltfFile:
+    return read_gltf(FOLDER / f"{name}.lod.glb")
+
+
+@pytest.fixture(scope="module")
+def character(name) -> Character:
+    return Character(load_character(FOLDER / f"{name}.yaml"))
+
+
+def all_primitives(file: GltfFile):
+    return [p for mesh in file.meshes for p in mesh.primitives]
+
+
+def material_extras(file: GltfFile, primitive) -> dict:
+    return file.materials[primitive.material].extras
+
+
+def skinned(file: GltfFile, primitive, joint_model: np.ndarray) -> np.ndarray:
+    """Vertices (V, 3) with the joints (N nodes, 4, 4) in model space."""
+    skin = file.skins[0]
+    matrices = joint_model[list(skin.joints)] @ skin.inverse_bind
+    blended = np.einsum("vk,vkij->vij", primitive.attributes["WEIGHTS_0"], matrices[primitive.attributes["JOINTS_0"]])
+    position = np.c_[primitive.attributes["POSITION"], np.ones(len(blended))]
+    return np.einsum("vij,vj->vi", blended, position)[:, :3]
+
+
+def test_it_is_a_vrm_with_the_reference_skeleton_in_t_pose(vrm):
+    assert vrm.version.startswith("1.")
+    assert vrm.faces == "+Z"
+    assert vrm.findings == []
+    assert set(REQUIRED_BONES) <= set(vrm.bones)
+    assert set(vrm.bones) == set(REFERENCE.names)
+    for joint, bone in enumerate(REFERENCE.names):
+        node = vrm.gltf.nodes[vrm.bones[bone]]
+        np.testing.assert_allclose(node.rotation, [0, 0, 0, 1])
+        np.testing.assert_allclose(
+            vrm.gltf.node_model[node.index][:3, 3], REFERENCE.rest_model[joint, :3, 3], atol=1e-5
+        )
+
+
+def test_meta_expressions_and_look_at_are_declared(vrm):
+    assert vrm.authors
+    assert vrm.meta["licenseUrl"] == "https://vrm.dev/licenses/1.0/"
+    assert set(EXPRESSIONS) <= set(vrm.expressions)
+    assert vrm.look_at is not None
+
+
+def test_skin_joints_come_in_the_documented_order(vrm, levels):
+    names = [vrm.gltf.nodes[j].name for j in vrm.gltf.skins[0].joints]
+    assert names[:41] == list(REFERENCE.names)
+    assert names[41:43] == ["leftForearmTwist", "rightForearmTwist"]
+    assert all(n.startswith(("bow_", "scarf_", "tuft_", "hair_")) for n in names[43:])
+    assert len(names) <= 64
+    assert [levels.nodes[j].name for j in levels.skins[0].joints] == names
+
+
+def test_spring_chains_hang_on_the_body_and_end_in_a_node_without_skin(vrm):
+    joints = set(vrm.gltf.skins[0].joints)
+    assert {c.name.split("_")[0] for c in vrm.springs} == {"bow", "scarf", "tuft", "hair"}
+    for chain in vrm.springs:
+        nodes = [joint.node for joint in chain.joints]
+        assert len(nodes) >= 2
+        for parent, child in itertools.pairwise(nodes):
+            assert vrm.gltf.nodes[child].parent == parent
+        assert set(nodes[:-1]) <= joints
+        assert nodes[-1] not in joints
+        assert vrm.gltf.nodes[vrm.gltf.nodes[nodes[0]].parent].name in ("head", "chest")
+    chained = {vrm.gltf.nodes[j.node].name for c in vrm.springs for j in c.joints[:-1]}
+    assert chained == {vrm.gltf.nodes[j].name for j in vrm.gltf.skins[0].joints[43:]}
+
+
+def test_vertices_are_finite_unit_and_bound(vrm, levels):
+    for file in (vrm.gltf, levels):
+        for primitive in all_primitives(file):
+            attributes = primitive.attributes
+            assert np.isfinite(attributes["POSITION"]).all()
+            np.testing.assert_allclose(attributes["WEIGHTS_0"].sum(1), 1.0, atol=1e-6)
+            assert attributes["JOINTS_0"].max() < len(file.skins[0].joints)
+            assert primitive.indices.max() < len(attributes["POSITION"])
+            if "NORMAL" in attributes:
+                np.testing.assert_allclose(np.linalg.norm(attributes["NORMAL"], axis=1), 1.0, atol=1e-4)
+                outline = attributes["_OUTLINE"]
+                assert ((outline == 0) | ((outline >= 0.4) & (outline <= 1.1001))).all()
+
+
+def test_every_joint_moves_something(vrm):
+    used = set()
+    for primitive in all_primitives(vrm.gltf):
+        joints, weights = primitive.attributes["JOINTS_0"], primitive.attributes["WEIGHTS_0"]
+        used |= set(joints[weights > 0.3].tolist())
+    names = [vrm.gltf.nodes[j].name for j in vrm.gltf.skins[0].joints]
+    assert {names[j] for j in range(len(names))} - {names[j] for j in used} == set()
+
+
+def test_levels_of_detail_keep_their_budgets(vrm, levels):
+    counts = {}
+    for file in (vrm.gltf, levels):
+        for node in file.nodes:
+            if node.mesh is not None:
+                primitives = file.meshes[node.mesh].primitives
+                counts[node.extras["lod"]] = sum(len(p.indices) // 3 for p in primitives)
+    assert set(counts) == set(LEVELS)
+    for level, count in counts.items():
+        assert count == pytest.approx(level, rel=0.1)
+
+
+def test_materials_carry_the_hand_picked_palette(vrm, character):
+    for primitive in all_primitives(vrm.gltf):
+        extras = material_extras(vrm.gltf, primitive)
+        swatch = character.spec.palette[extras["palette"]]
+        assert (extras["class"], extras["lit_srgb"]) == (swatch.kind, swatch.lit)
+        assert "VRMC_materials_mtoon" in vrm.gltf.materials[primitive.material].extensions
+
+
+def test_the_face_is_one_primitive_with_its_projection(vrm):
+    faces = [p for p in all_primitives(vrm.gltf) if material_extras(vrm.gltf, p)["class"] == "face"]
+    assert len(faces) == 1
+    uv, masks = faces[0].attributes["TEXCOORD_0"], faces[0].attributes["_FACE"]
+    assert ((masks >= 0) & (masks <= 1)).all()
+    painted = masks[:, 0] > 0
+    assert painted.sum() > 500
+    assert ((uv[painted] >= 0) & (uv[painted] <= 1)).all()
+    local = faces[0].attributes["POSITION"][painted] - (0.0, 1.208, 0.004)
+    np.testing.assert_allclose(uv[painted, 0], (local[:, 0] + 0.17) / 0.34, atol=1e-4)
+    np.testing.assert_allclose(uv[painted, 1], (0.14 - local[:, 1]) / 0.34, atol=1e-4)
+
+
+def test_hair_carries_the_terms_of_its_highlight(vrm):
+    hair = [p for p in all_primitives(vrm.gltf) if material_extras(vrm.gltf, p)["class"] == "hair"]
+    assert hair
+    for primitive in hair:
+        azimuth, height = primitive.attributes["_HAIR"].T
+        assert np.abs(azimuth).max() < 3 * np.pi
+        assert np.abs(height).max() <= 1.0001
+
+
+def test_at_rest_the_skin_stands_in_a_t_pose(vrm):
+    """Arms level at shoulder height, feet on the ground, the crown at 1.40 m."""
+    by_name = {}
+    for primitive in all_primitives(vrm.gltf):
+        at_rest = skinned(vrm.gltf, primitive, vrm.gltf.node_model)
+        by_name.setdefault(material_extras(vrm.gltf, primitive)["palette"], []).append(at_rest)
+    everything = np.vstack([v for group in by_name.values() for v in group])
+    assert everything[:, 1].min() == pytest.approx(0.0, abs=0.01)
+    head = by_name["face"][0]
+    assert head[:, 1].max() == pytest.approx(1.40, abs=0.02)
+    assert np.abs(everything[:, 0]).max() == pytest.approx(0.128 + 0.216 + 0.206 + 0.14, abs=0.015)
+    hands = by_name["skin"][0]
+    hands = hands[np.abs(hands[:, 0]) > 0.58]
+    assert len(hands) > 500
+    assert np.abs(hands[:, 1] - 0.905).max() < 0.035
+    assert np.abs(hands[:, 2]).max() < 0.11
+    assert everything[:, 0].max() == pytest.approx(-everything[:, 0].min(), abs=1e-3)
+
+
+def test_arms_down_gives_back_the_modelled_surface(vrm):
+    """With the arms turned 45 degrees down the skin is where it was sculpted."""
+    local = np.array([node.matrix for node in vrm.gltf.nodes])
+    for bone, sign in (("leftUpperArm", -1.0), ("rightUpperArm", 1.0)):
+        c, s = np.cos(np.pi / 4), np.sin(np.pi / 4) * sign
+        local[vrm.bones[bone]][:2, :2] = [[c, -s], [s, c]]
+    model = vrm.gltf.to_model(local)
+    for primitive in all_primitives(vrm.gltf):
+        np.testing.assert_allclose(skinned(vrm.gltf, primitive, model), primitive.attributes["POSITION"], atol=1e-5)
+
+
+def test_the_builder_still_makes_the_committed_hair(vrm, character):
+    """A small part made anew lies where the committed file has it, within a tenth of a millimetre."""
+    hair = next(p for p in all_primitives(vrm.gltf) if material_extras(vrm.gltf, p)["class"] == "hair")
+    committed = cKDTree(hair.attributes["POSITION"])
+    for _, clump in character.hair.all_clumps(Detail(LEVELS[40000])):
+        distance, _ = committed.query(clump.position)
+        assert distance.max() < 1e-4
+
+
+def test_bad_numbers_are_refused_with_their_place(tmp_path):
+    text = (FOLDER / "mira.yaml").read_text(encoding="utf-8")
+    slip = tmp_path / "slip.yaml"
+    slip.write_text(text.replace("sock_top:", "sok_top:"), encoding="utf-8")
+    with pytest.raises(BadInput, match=r"slip\.yaml:\d+:\d+.*sock_top"):
+        load_character(slip)
+    slip.write_text(text.replace("chin: 0.020", "chin: soft"), encoding="utf-8")
+    with pytest.raises(BadInput, match=r"slip\.yaml:\d+:\d+.*number"):
+        load_character(slip)
+    slip.write_text(text.replace('"#E9543F"', '"#E9543"'), encoding="utf-8")
+    with pytest.raises(BadInput, match="#rrggbb"):
+        load_character(slip)
