@@ -52,7 +52,7 @@ def read_units(path: Path) -> tuple[list[MotionUnit], Transitions]:
         with findings.collect():
             units.append(_unit(key, node))
     transitions: Transitions = {}
-    known = {u.name for u in units} | {rest_unit(layer).name for layer in LAYERS_WITH_REST}
+    known = {key.as_str() for key, _ in entries} | {rest_unit(layer).name for layer in LAYERS_WITH_REST}
     counts = root.get("transitions")
     for key, row in counts.items() if counts else []:
         with findings.collect():
@@ -108,7 +108,9 @@ def _variant(node: Node) -> Variant:
     if clean:
         if len(clean) != 2:
             raise clean.error(expected="[start, end] in seconds")
-        clean_s = [value.as_float(start_s - 1e-6, end_s + 1e-6) for value in clean]
+        clean_s = [value.as_float() for value in clean]
+        if not start_s - 1e-6 <= clean_s[0] <= clean_s[1] <= end_s + 1e-6:
+            raise clean.error("clean part", expected=f"a stretch within {start_s:g} to {end_s:g} s")
     emotion = EMOTION_INDEX[one_of(node["emotion"], EMOTIONS)]
     stroke_s = stroke.as_float(start_s, end_s) if stroke else None
     return Variant(emotion, node["take"].as_str(), start_s, end_s, clean_s[0], clean_s[1], stroke_s)
