@@ -125,7 +125,7 @@ def test_an_afternoon_books_its_talks(assets) -> None:
     state = visit_stall(assets, afternoon, item)
     state = choose(assets, state, Choice("offer", ask_money(state.list_price, state.bargain.ask)))
     assert state.deal_price == state.list_price
-    after = finish_talk(afternoon, state)
+    after = finish_talk(assets, afternoon, state)
     assert after.owned == {item}
     assert after.purse == afternoon.purse - state.deal_price
     assert after.visits == 1
