@@ -27,6 +27,7 @@ from game.formats import (
     Vrm,
     animation_clip,
     build_vrm,
+    build_vrma,
     estimate_scale,
     read_bvh,
     read_gltf,
@@ -124,11 +125,17 @@ def _open_gltf(path: Path, animation: int, fps: float) -> _Contents:
     if not file.animations:
         rest = rig.skeleton
         clip = Clip(rest, 1.0 / fps, rest.rest_rotation[None], rest.rest_translation[None], name=path.stem)
-    elif 0 <= animation < len(file.animations):
-        clip = animation_clip(file, animation, fps, rig)
-    else:
+    elif not 0 <= animation < len(file.animations):
         raise BadInput("--animation", expected=f"0 to {len(file.animations) - 1}", seen=animation)
-    kind = f"VRM {vrm.version}" if vrm else "VRMA 1.0" if "VRMC_vrm_animation" in file.extensions else "glTF"
+    elif "VRMC_vrm_animation" in file.extensions:
+        moving = build_vrma(file, animation, fps=fps)
+        names = moving.clip.skeleton.names
+        facts["bones"] = {bone: names[joint] for bone, joint in moving.bones.items()}
+        facts["expressions"] = list(moving.expressions)
+        return _Contents(path, "VRMA 1.0", moving.clip, True, facts, moving.findings)
+    else:
+        clip = animation_clip(file, animation, fps, rig)
+    kind = f"VRM {vrm.version}" if vrm else "glTF"
     return _Contents(path, kind, clip, bool(file.animations), facts, vrm.findings if vrm else file.findings)
 
 

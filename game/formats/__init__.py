@@ -14,7 +14,7 @@ from game.formats.gltf_model import (
     GltfSkin,
 )
 from game.formats.gltf_skeleton import GltfSkeleton, animation_clip, skeleton_of
-from game.formats.vrm import build_vrm, read_vrm, read_vrma
+from game.formats.vrm import build_vrm, build_vrma, read_vrm, read_vrma
 from game.formats.vrm_model import SpringChain, SpringCollider, SpringJoint, Vrm, VrmAnimation, VrmExpression, VrmLookAt
 from game.formats.yaml_source import Node, load_yaml, nearest, parse_yaml
 
@@ -40,6 +40,7 @@ __all__ = [
     "VrmLookAt",
     "animation_clip",
     "build_vrm",
+    "build_vrma",
     "estimate_scale",
     "load_yaml",
     "nearest",

@@ -31,6 +31,7 @@ _WORD = re.compile(rb"\S+")
 _HEADER = re.compile(rb"\s*(Frames|Frame\s+Time)\s*:\s*(\S*)\s*", re.IGNORECASE)
 _NUMERIC = b"0123456789+-.eE \t\r\n"
 _MAX_VALUES = 16_000_000
+_BLOCK_VALUES = 250_000
 _NEGLIGIBLE = 1e-30  # far below any angle or length; its products would underflow
 
 
@@ -136,10 +137,10 @@ def _motion_rows(text: BvhText, offset: int, columns: int, max_frames: int) -> F
             where=text.where(len(text.data)), expected="at least one row of motion", seen="the end of the file"
         )
     rows = np.frombuffer(values, dtype=np.float64).reshape(frames, columns)
-    large = np.abs(rows) > LARGEST  # also infinity, of a number like 1e999
-    if large.any():
+    if max(rows.max(), -rows.min()) > LARGEST:  # also infinity, of a number like 1e999
         _refuse_odd_token(text, offset)
-    return np.where(np.abs(rows) < _NEGLIGIBLE, 0.0, rows)
+    rows[np.abs(rows) < _NEGLIGIBLE] = 0.0
+    return rows
 
 
 def _refuse_odd_token(text: BvhText, offset: int) -> None:
@@ -189,9 +190,14 @@ def _poses(joints: Sequence[BvhJoint], rows: Floats) -> tuple[Floats, Floats]:
         if order:
             turning.setdefault(order, []).append((index, turn_columns))
     # All joints with the same channel order are turned at once.
+    block = max(1, _BLOCK_VALUES // rows.shape[1])
     for order, group in turning.items():
-        angles_rad = np.radians(rows[:, np.array([columns for _, columns in group])])
-        rotation[:, [index for index, _ in group]] = quat.normalize(quat.from_euler(order, angles_rad))
+        turned = [index for index, _ in group]
+        turn_columns_of = np.array([columns for _, columns in group])
+        # In blocks of frames, so that intermediate results stay small however long the take.
+        for start in range(0, frames, block):
+            angles_rad = np.radians(rows[start : start + block, turn_columns_of])
+            rotation[start : start + block, turned] = quat.normalize(quat.from_euler(order, angles_rad))
     return rotation, translation
 
 

@@ -262,6 +262,7 @@ def _finish(reader: _Reader, where: Where) -> None:
 def _make_unique(reader: _Reader) -> None:
     taken = {joint.name for joint in reader.joints if joint.name}
     seen: set[str] = set()
+    copies: dict[str, int] = {}
     for index, joint in enumerate(reader.joints):
         if "\ufffd" in joint.name:
             reader.findings.append(f"{joint.where}: the name {joint.name!r} is not UTF-8")
@@ -269,9 +270,10 @@ def _make_unique(reader: _Reader) -> None:
             seen.add(joint.name)
             continue
         base = joint.name or f"joint_{index}"
-        copy, name = 2, base
+        name = base
         while name in taken:
-            name, copy = f"{base}_{copy}", copy + 1
+            copies[base] = copies.get(base, 1) + 1
+            name = f"{base}_{copies[base]}"
         what = f"a second joint {joint.name!r}" if joint.name else "a joint without a name"
         reader.findings.append(f"{joint.where}: {what}, called {name!r}")
         joint.name = name

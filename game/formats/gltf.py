@@ -23,6 +23,8 @@ from game.formats.json_shape import Anything, Items, Report, check
 
 __all__ = ["read_gltf"]
 
+_MAX_ITEMS = 50_000
+
 # Understood, or changing only looks that this project does not draw.
 _KNOWN_EXTENSIONS = (
     "KHR_animation_pointer",
@@ -45,11 +47,13 @@ def read_gltf(path: Path | str, *, max_bytes: int = 256_000_000) -> GltfFile:
     for name in LISTS:
         # First of all, since every index is held against the length of its list.
         check(document.get(name, []), Items(Anything(), empty_ok=True), report, (name,))
+        if len(document.get(name, [])) > _MAX_ITEMS:
+            report.refuse((name,), expected=f"at most {_MAX_ITEMS} items", seen=len(document[name]))
     report.lengths = {name: len(document.get(name, [])) for name in LISTS}
     check(document, GLTF, report)
     _check_version(document, report)
     _check_extensions(document, report)
-    buffers = Buffers(container, report, max_bytes=2 * max_bytes)
+    buffers = Buffers(container, report, max_bytes=max_bytes)
     buffers.decode_all()
     nodes = build_nodes(document, report)
     check_scenes(document, nodes, report)

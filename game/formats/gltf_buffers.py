@@ -18,6 +18,7 @@ from game.formats.json_shape import Report
 __all__ = ["Buffers"]
 
 Array = NDArray[Any]
+_SPARE_BYTES = 16_000_000
 _INTEGER_LIMITS = {"i1": 127.0, "u1": 255.0, "i2": 32767.0, "u2": 65535.0}
 
 
@@ -31,10 +32,10 @@ class Buffers:
     def __init__(self, container: Container, report: Report, *, max_bytes: int) -> None:
         self._document = container.document
         self._report = report
-        self._budget = max_bytes
-        self._max_bytes = max_bytes
         self._decoded: dict[int, Array] = {}
-        self._buffers = self._load_buffers(container)
+        self._buffers = self._load_buffers(container, max_bytes)
+        # Honest files decode to a few times their size; overlapping or zero-filled accessors could go on for ever.
+        self._allowed = self._budget = _SPARE_BYTES + 8 * sum(len(buffer) for buffer in self._buffers if buffer)
         for index in range(len(self._document.get("bufferViews", []))):
             self._check_view(index)
         for index in range(len(self._document.get("accessors", []))):
@@ -69,15 +70,13 @@ class Buffers:
             self._decoded[index] = array
         return self._decoded[index]
 
-    def _load_buffers(self, container: Container) -> list[memoryview | None]:
+    def _load_buffers(self, container: Container, max_bytes: int) -> list[memoryview | None]:
         buffers: list[memoryview | None] = []
         for index, buffer in enumerate(self._document.get("buffers", [])):
             pointer = ("buffers", index)
             if "uri" in buffer:
                 where = self._report.where(*pointer, "uri")
-                data = memoryview(
-                    resolve_uri(container.path, buffer["uri"], where, max_bytes=self._max_bytes, what="buffer")
-                )
+                data = memoryview(resolve_uri(container.path, buffer["uri"], where, max_bytes=max_bytes, what="buffer"))
             elif index == 0 and container.is_glb:
                 if container.binary is None:
                     self._report.refuse(pointer, "a buffer without data", hint="no uri and no BIN chunk")
@@ -91,7 +90,9 @@ class Buffers:
                 self._report.refuse(
                     (*pointer, "byteLength"), expected=f"at most {len(data)}", seen=buffer["byteLength"]
                 )
-            self._spend(len(data), pointer)
+            max_bytes -= len(data)
+            if max_bytes < 0:
+                self._report.refuse(pointer, "buffers larger than this reader takes")
             buffers.append(data[: buffer["byteLength"]])
         return buffers
 
@@ -104,7 +105,7 @@ class Buffers:
     def _spend(self, size: int, pointer: tuple[str | int, ...]) -> None:
         self._budget -= size
         if self._budget < 0:
-            self._report.refuse(pointer, f"more than {self._max_bytes} bytes of decoded data")
+            self._report.refuse(pointer, f"more than {self._allowed} bytes of decoded data")
 
     def _check_view(self, index: int) -> None:
         view = self._document["bufferViews"][index]

@@ -17,9 +17,12 @@ from game.core.clip import Clip
 from game.core.errors import BadInput, Where
 from game.core.skeleton import Skeleton
 from game.formats.gltf_animation import sample_local
-from game.formats.gltf_model import Floats, GltfFile
+from game.formats.gltf_model import Floats, GltfAnimation, GltfFile
 
 __all__ = ["GltfSkeleton", "animation_clip", "skeleton_of"]
+
+_MAX_JOINT_POSES = 5_000_000
+_BLOCK_MATRICES = 50_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +65,30 @@ def animation_clip(file: GltfFile, index: int = 0, fps: float = 30.0, skeleton: 
     rig = skeleton_of(file) if skeleton is None else skeleton
     animation = file.animations[index]
     frames = int(np.floor(min(animation.length_s, 1e6) * fps + 1e-6)) + 1
-    if frames > 200_000:
+    joints = len(rig.skeleton)
+    if frames * joints > _MAX_JOINT_POSES:
+        most = _MAX_JOINT_POSES // joints
         raise BadInput(
-            where=Where(file.path, pointer=f"/animations/{index}"), expected="at most 200000 frames", seen=frames
+            where=Where(file.path, pointer=f"/animations/{index}"), expected=f"at most {most} frames", seen=frames
         )
-    local_translation, local_rotation, scale = sample_local(file, animation, np.arange(frames) / fps)
-    local = np.zeros((frames, len(file.nodes), 4, 4))
-    local[..., :3, :3] = quat.to_matrix(local_rotation) * scale[..., None, :]
-    local[..., :3, 3] = local_translation
-    local[..., 3, 3] = 1.0
-    translation, rotation = _to_local(file.to_model(local)[:, rig.nodes], rig.skeleton.parents)
+    translation, rotation = np.empty((frames, joints, 3)), np.empty((frames, joints, 4))
+    # In blocks: the matrices of all nodes are needed only on the way.
+    block = max(1, _BLOCK_MATRICES // len(file.nodes))
+    for start in range(0, frames, block):
+        times_s = np.arange(start, min(start + block, frames)) / fps
+        model = _node_matrices(file, animation, times_s)[:, rig.nodes]
+        translation[start : start + block], rotation[start : start + block] = _to_local(model, rig.skeleton.parents)
     return Clip(rig.skeleton, 1.0 / fps, rotation, translation, name=animation.name or file.path.stem)
+
+
+def _node_matrices(file: GltfFile, animation: GltfAnimation, times_s: Floats) -> Floats:
+    """(T, N, 4, 4) model-space matrices of all nodes."""
+    translation, rotation, scale = sample_local(file, animation, times_s)
+    local = np.zeros((len(times_s), len(file.nodes), 4, 4))
+    local[..., :3, :3] = quat.to_matrix(rotation) * scale[..., None, :]
+    local[..., :3, 3] = translation
+    local[..., 3, 3] = 1.0
+    return file.to_model(local)
 
 
 def _to_local(model: Floats, parents: NDArray[np.intp]) -> tuple[Floats, Floats]:
@@ -102,11 +118,13 @@ def _default_nodes(file: GltfFile) -> set[int]:
 def _unique(names: list[str]) -> tuple[str, ...]:
     taken = set(names)
     seen: set[str] = set()
+    copies: dict[str, int] = {}
     result = []
     for name in names:
-        candidate, copy = name, 2
+        candidate = name
         while candidate in seen or (candidate != name and candidate in taken):
-            candidate, copy = f"{name}_{copy}", copy + 1
+            copies[name] = copies.get(name, 1) + 1
+            candidate = f"{name}_{copies[name]}"
         seen.add(candidate)
         result.append(candidate)
     return tuple(result)

@@ -19,7 +19,7 @@ from game.formats.files import decode_utf8
 
 __all__ = ["Anything", "Fields", "Flag", "Index", "Items", "Number", "Report", "Table", "Text", "check", "parse_json"]
 
-_MAX_STRUCTURE = 4_000_000
+_MAX_STRUCTURE = 1_000_000
 _MAX_DEPTH = 128
 _LARGEST = 1e30
 

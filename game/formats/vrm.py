@@ -26,7 +26,7 @@ from game.formats.vrm_model import (
 )
 from game.formats.vrm_shape import VRM0, VRMA, VRMC_SPRING, VRMC_VRM
 
-__all__ = ["build_vrm", "read_vrm", "read_vrma"]
+__all__ = ["build_vrm", "build_vrma", "read_vrm", "read_vrma"]
 
 
 def read_vrm(path: Path | str, *, max_bytes: int = 256_000_000) -> Vrm:
@@ -61,7 +61,11 @@ def build_vrm(file: GltfFile) -> Vrm:
 
 def read_vrma(path: Path | str, *, fps: float = 30.0, max_bytes: int = 64_000_000) -> VrmAnimation:
     """Read a VRM animation and sample it at a fixed rate on the skeleton of its humanoid bones."""
-    file = read_gltf(path, max_bytes=max_bytes)
+    return build_vrma(read_gltf(path, max_bytes=max_bytes), fps=fps)
+
+
+def build_vrma(file: GltfFile, index: int = 0, *, fps: float = 30.0) -> VrmAnimation:
+    """The VRM animation in a glTF file that is already read; index: which of its animations."""
     report = _report(file)
     if "VRMC_vrm_animation" not in file.extensions:
         raise BadInput("no VRMC_vrm_animation block", where=Where(file.path, pointer="/extensions"))
@@ -70,6 +74,8 @@ def read_vrma(path: Path | str, *, fps: float = 30.0, max_bytes: int = 64_000_00
     _check_version(source, report, ("extensions", "VRMC_vrm_animation"))
     if not file.animations:
         raise BadInput("no animation", where=Where(file.path, pointer="/animations"))
+    if not 0 <= index < len(file.animations):
+        raise BadInput("animation", where=Where(file.path), expected=f"0 to {len(file.animations) - 1}", seen=index)
     bones = _bones(source.get("humanoid", {"humanBones": {}}), report, ("extensions", "VRMC_vrm_animation"))
     rig = skeleton_of(file, bones.values() if bones else None)
     groups = source.get("expressions", {})
@@ -79,7 +85,7 @@ def read_vrma(path: Path | str, *, fps: float = 30.0, max_bytes: int = 64_000_00
     return VrmAnimation(
         file,
         rig,
-        animation_clip(file, 0, fps, rig),
+        animation_clip(file, index, fps, rig),
         {bone: rig.joint[node] for bone, node in bones.items()},
         expressions,
         source.get("lookAt", {}).get("node"),

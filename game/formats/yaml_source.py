@@ -258,7 +258,7 @@ class _Builder:
             self._check(event)
             kind: Kind = "mapping" if isinstance(event, yaml.MappingStartEvent) else "sequence"
             if event.tag not in (None, "!", _CORE + ("map" if kind == "mapping" else "seq")):
-                raise BadInput(f"tag {event.tag!r} is not allowed here", where=self._where(event))
+                raise BadInput(f"tag {event.tag[:60]!r} is not allowed here", where=self._where(event))
             if len(self.stack) >= self.max_depth:
                 raise BadInput(
                     where=self._where(event),
@@ -275,7 +275,7 @@ class _Builder:
             else:
                 self._add(Node(done.where, "sequence", _items=tuple(done.items)))
         elif isinstance(event, yaml.AliasEvent):
-            raise BadInput(f"alias *{event.anchor}", where=self._where(event), hint="write the value out")
+            raise BadInput(f"alias *{event.anchor[:40]}", where=self._where(event), hint="write the value out")
         elif isinstance(event, yaml.DocumentStartEvent):
             self.documents += 1
             if self.documents > 1:
@@ -287,7 +287,9 @@ class _Builder:
 
     def _check(self, event: Any) -> None:
         if event.anchor is not None:
-            raise BadInput(f"anchor &{event.anchor}", where=self._where(event), hint="write the value out where needed")
+            raise BadInput(
+                f"anchor &{event.anchor[:40]}", where=self._where(event), hint="write the value out where needed"
+            )
         self.count += 1
         if self.count > self.max_nodes:
             raise BadInput(where=self._where(event), expected=f"at most {self.max_nodes} values", seen=_Plain("more"))
@@ -302,7 +304,9 @@ class _Builder:
         else:
             value = _resolve(text, where)
             if event.tag != _CORE + _TAG_OF[type(value)]:
-                raise BadInput(f"tag {event.tag!r} does not fit or is not allowed", where=where, hint="leave it out")
+                raise BadInput(
+                    f"tag {event.tag[:60]!r} does not fit or is not allowed", where=where, hint="leave it out"
+                )
         return Node(where, "null" if value is None else "scalar", value, text)
 
     def _add(self, node: Node) -> None:
@@ -318,7 +322,7 @@ class _Builder:
             first = top.pairs.get(node.value)
             if first is not None:
                 place = f"{first[0].where.line}:{first[0].where.col}"
-                raise BadInput(f"duplicate key {node.value!r}, first given at {place}", where=node.where)
+                raise BadInput(f"duplicate key {node.value[:60]!r}, first given at {place}", where=node.where)
             top.key = node
         else:
             assert isinstance(top.key.value, str)
