@@ -18,7 +18,7 @@ from game.tools.modelling.weights import Binder
 __all__ = ["Hair"]
 
 _HAIRLINE_DEG = (0, 40, 70, 88, 105, 130, 180)
-_HAIRLINE_M = (0.110, 0.075, 0.020, -0.040, -0.115, -0.150, -0.160)
+_HAIRLINE_M = (0.110, 0.075, 0.020, -0.035, -0.092, -0.128, -0.142)
 """Lower edge of the cap under the clumps: height over the hair's centre by azimuth."""
 
 
