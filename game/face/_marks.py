@@ -75,8 +75,8 @@ def complexion(sheet: Sheet, params: FaceParams) -> None:
     _veil(sheet, pale, "#E9ECF6", (138.0, 0.5), (40.0, 0.5), (-60.0, 0.42), (-190.0, 0.3))
     _veil(sheet, pale, "#7C88BE", (138.0, 0.5), (60.0, 0.38), (-30.0, 0.12), (-110.0, 0.0))
     _veil(sheet, sick, "#A9BD8C", (138.0, 0.34), (20.0, 0.28), (-60.0, 0.24), (-190.0, 0.32))
-    _ovals(sheet, ((0.0, -112.0, 105.0, 62.0),), "#7FA070", 0.44 * sick)
-    _ovals(sheet, _cheeks(84.0, -78.0, 46.0, 28.0), "#7D9C64", 0.5 * sick)
+    _ovals(sheet, ((0.0, -112.0, 105.0, 62.0),), "#86A574", 0.30 * sick)
+    _ovals(sheet, _cheeks(84.0, -78.0, 50.0, 32.0), "#86A46C", 0.34 * sick)
     _veil(sheet, gloom, "#56639F", (138.0, 0.88), (70.0, 0.80), (10.0, 0.55), (-50.0, 0.22), (-100.0, 0.0))
     _ovals(sheet, ((0.0, -60.0, 165.0, 92.0),), "#F0412E", 0.46 * red)
     _ovals(sheet, _cheeks(84.0, -74.0, 60.0, 42.0), "#E8321F", 0.52 * red)
@@ -148,11 +148,12 @@ def drops(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
 def signs(sheet: Sheet, params: FaceParams) -> None:
     """Sweat drop and vein: drawn over the hair too, so a fringe never hides them."""
     vein, sweat = float(params[INDEX["vein"]]), float(params[INDEX["sweat"]])
-    if vein > 1e-3:
+    if vein > 0.1:
+        shown = min((vein - 0.1) * 2.5, 1.0)
         size = (0.45 + 0.75 * vein) * 1.15
         arms = _VEIN_ARMS * size + (-92.0, 60.0)
         for code, width in (("#FFF3E0", 12.0), ("#F0242A", 6.4)):
-            colour = np.tile(ink(code) * min(vein * 2.0, 1.0), (4, 1))
+            colour = np.tile(ink(code) * shown, (4, 1))
             ribbons(sheet, arms, (width * size) * _VEIN_WIDTH, colour, late=True, over=True)
     if sweat > 1e-3:
         place = (104.0, 26.0 - 14.0 * sweat)

@@ -37,17 +37,21 @@ class FaceTiming:
     micro_depth: float
     speech_half_life_s: float
     speech_reach: float
+    tremble_tears: float
+    tremble_iris: float
+    tremble_teeth_mm: float
 
 
 def load_timing(path: Path) -> FaceTiming:
     """Read ``timing.yaml``. Raises BadInput with file:line:col."""
-    root = load_yaml(path).only("version", "regions", "hysteresis", "micro", "speech")
+    root = load_yaml(path).only("version", "regions", "hysteresis", "micro", "speech", "tremble")
     root["version"].as_int(1, 1)
     table = root["regions"].only(*REGIONS)
     rows = [table[region].only("delay_s", "half_life_s") for region in REGIONS]
     hysteresis = root["hysteresis"].only("margin", "hold_s")
     micro = root["micro"].only("threshold", "rate_hz", "shortest_s", "longest_s", "depth")
     speech = root["speech"].only("half_life_s", "reach")
+    tremble = root["tremble"].only("tears", "iris", "teeth_mm")
     shortest = micro["shortest_s"].as_float(0.0, 1.0)
     return FaceTiming(
         delay_s=np.array([row["delay_s"].as_float(0.0, 5.0) for row in rows]),
@@ -61,6 +65,9 @@ def load_timing(path: Path) -> FaceTiming:
         micro_depth=micro["depth"].as_float(0.0, 1.0),
         speech_half_life_s=speech["half_life_s"].as_float(0.0, 1.0),
         speech_reach=speech["reach"].as_float(0.0, 2.0),
+        tremble_tears=tremble["tears"].as_float(0.0, 1.0),
+        tremble_iris=tremble["iris"].as_float(0.0, 1.0),
+        tremble_teeth_mm=tremble["teeth_mm"].as_float(0.0, 5.0),
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,6 +111,7 @@ def advance_face(asset: FaceAsset, state: FaceState, signal: FaceSignal, dt_s: f
     )
     shown = _with_micro(asset, state, state.params.copy(), dt_s)
     _speak(asset, state.visemes, shown)
+    _tremble(asset, state.tick * dt_s, shown)
     _look_and_blink(signal, shown)
     return state, clamp(shown)
 
@@ -238,6 +240,22 @@ def _speak(asset: FaceAsset, visemes: Floats, params: FaceParams) -> None:
     for name in ("teeth_clench", "tongue_out", "mouth_cat", "mouth_wave", "mouth_peak", "mouth_square", "mouth_pout"):
         params[INDEX[name]] *= 1.0 - 0.85 * talk
     params[INDEX["mouth_corner"]] *= 1.0 - 0.3 * talk
+
+
+def _tremble(asset: FaceAsset, time_s: float, params: FaceParams) -> None:
+    """Tears make the lights shake, fear the small iris, chattering teeth the mouth: at 4 to 11 Hz, never in step."""
+    timing = asset.timing
+    well = float(params[INDEX["tear_well"]])
+    if well > 1e-3:
+        params[INDEX["highlight"]] += timing.tremble_tears * well * math.sin(2.0 * math.pi * 4.3 * time_s)
+    fright = max(0.85 - float(params[INDEX["iris_size"]]), 0.0) * max(float(params[INDEX["eye_open"]]) - 1.0, 0.0)
+    if fright > 1e-3:
+        shake = min(20.0 * fright, 1.0) * timing.tremble_iris
+        params[INDEX["look_x"]] += shake * math.sin(2.0 * math.pi * 7.7 * time_s)
+        params[INDEX["look_y"]] += 0.5 * shake * math.sin(2.0 * math.pi * 6.1 * time_s + 1.0)
+    chatter = float(params[INDEX["teeth_clench"]]) * abs(float(params[INDEX["mouth_wave"]]))
+    if chatter > 1e-3:
+        params[INDEX["mouth_y"]] += chatter * timing.tremble_teeth_mm * math.sin(2.0 * math.pi * 11.3 * time_s)
 
 
 def _look_and_blink(signal: FaceSignal, params: FaceParams) -> None:

@@ -141,6 +141,28 @@ def test_confidence_intervals_cover_the_truth_about_as_often_as_they_say(model):
     assert 0.90 <= hits / total <= 0.99
 
 
+def test_ratings_of_the_parts_alone_predict_all_faces(model):
+    """The paper's O(n): some 50 rated faces stand for 25,200; the error falls with the number of raters."""
+    rng = np.random.default_rng(12)
+    weights = model.weights.value
+    exact, _ = model.all_faces()
+    errors = []
+    for raters in (4, 32, 256):
+        predicted = np.zeros(exact.shape)
+        for axis, region in enumerate(model.parts.regions):
+            rated = []
+            for mean, sigma in zip(region.mean, region.covariance, strict=True):
+                answers = rng.multivariate_normal(mean, sigma, raters).clip(-1.0, 1.0)
+                rated.append(fit_gaussian(answers)[0])
+            shape = [1, 1, 1, 1, 2]
+            shape[axis] = -1
+            predicted = predicted + (np.array(rated) * weights[axis]).reshape(shape)
+        errors.append(float(np.sqrt(((predicted - exact) ** 2).mean())))
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[1] < 0.1
+    assert errors[2] < 0.04
+
+
 def test_too_few_or_singular_ratings_are_refused():
     with pytest.raises(BadInput, match="at least 6"):
         fit_weights(np.zeros((5, 4, 2)), np.zeros((5, 2)))
