@@ -11,17 +11,15 @@ from game.story.model import ChoiceDef
 __all__ = ["draw_choices"]
 
 
-def draw_choices(
-    pool: Sequence[ChoiceDef], count: int, acts: ActTable, seed: int, counter: int
-) -> tuple[list[ChoiceDef], int]:
-    """``count`` choices of different acts, and the counter after the draws.
+def draw_choices(pool: Sequence[ChoiceDef], count: int, acts: ActTable, seed: int, counter: int) -> list[ChoiceDef]:
+    """``count`` choices of different acts, by the numbers of stream ``seed`` from ``counter`` on.
 
     The set of acts is drawn from those in which some line is right for at least six of the seven emotions (or for
     as many as the pool allows), so that the offer tells nothing about what is felt. Too few acts in the pool: the
     rest is filled with further choices.
     """
     if not pool or count <= 0:
-        return [], counter
+        return []
     by_act: dict[str, list[ChoiceDef]] = {}
     for choice in pool:
         by_act.setdefault(choice.act, []).append(choice)
@@ -38,4 +36,4 @@ def draw_choices(
         counter += 1
         drawn.append(rest.pop(int(uniform(seed, counter) * len(rest))))
     order = shuffled(len(drawn), seed, counter + 1)
-    return [drawn[i] for i in order], counter + len(drawn)
+    return [drawn[i] for i in order]

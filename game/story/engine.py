@@ -20,6 +20,7 @@ __all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "St
 # A walk from one waiting place to the next passes far fewer nodes; the reader refuses scripts that could loop.
 _MAX_STEPS = 500
 _MAX_RETURNS = 16
+_DRAW_STREAM = 0x9E3779B9
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,7 @@ class _Run:
         self.state = state
         self.node = state.node
         self.counter = state.counter
+        self.turn = state.turn
         self.ended = state.ended
         self.returns = list(state.returns)
         self.visits = dict(state.visits)
@@ -341,7 +343,9 @@ class _Run:
     def wait_at(self, node: NodeDef) -> bool:
         """Lay the choices of a node on the table; False where none can be taken."""
         pool = [c for name in node.pools for c in self.script.pools[name] if self.usable(c)]
-        drawn, self.counter = draw_choices(pool, node.draw, self.script.acts, self.state.seed, self.counter)
+        # A stream of its own, by turns: what was said before must not shift which lines are offered.
+        self.turn += 1
+        drawn = draw_choices(pool, node.draw, self.script.acts, self.state.seed ^ _DRAW_STREAM, self.turn * 64)
         fixed = [choice for choice in node.choices if self.shown(choice)]
         standing = [choice for choice in self.script.standing if node.standing and self.shown(choice)]
         self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *fixed, *standing)]
@@ -370,6 +374,7 @@ class _Run:
             self.state,
             started=True,
             counter=self.counter,
+            turn=self.turn,
             node=self.node,
             ended=self.ended,
             returns=tuple(self.returns),

@@ -196,11 +196,10 @@ class _Compiler:
                 return "number", lambda scope: _clamp(do(a(scope), b(scope)))
             case ast.Compare():
                 return self.compare(node, depth)
-            case ast.Call(func=ast.Name(id="seen"), args=[ast.Constant(value=str(name))], keywords=[]):
+            case ast.Call(func=ast.Name(id="seen"), args=[ast.Constant(value=str(name)) as argument], keywords=[]):
                 if name not in self.names.ids:
-                    raise self.fail(
-                        "E_UNKNOWN_NAME", f"no line, choice or node {name!r}", node, _hint(name, self.names.ids)
-                    )
+                    hint = _hint(name, self.names.ids)
+                    raise self.fail("E_UNKNOWN_NAME", f"no line, choice or node {name!r}", argument, hint)
                 self.seen.add(name)
                 return "bool", lambda scope: name in scope.seen
             case ast.Call(func=ast.Name(id="min" | "max" as which), args=args, keywords=[]) if 2 <= len(args) <= 8:

@@ -35,6 +35,7 @@ class Parts:
     variables: Mapping[str, Variable]
     people: Mapping[str, Speaker]
     faces: Mapping[str, Mapping[str, float]]
+    items: Sequence[str]
     longest_item: Text
     currency: Currency
     ids: dict[str, Node]
@@ -56,9 +57,9 @@ class Parts:
             words[language] = (value or "").strip()
         text = Text(words["en"], words["ja"])
         if text.en and text.ja:
-            only_en = {name for name, _ in slots(text.en)} ^ {name for name, _ in slots(text.ja)}
-            if only_en:
-                found = ", ".join(sorted(only_en))
+            one_only = {name for name, _ in slots(text.en)} ^ {name for name, _ in slots(text.ja)}
+            if one_only and one_only <= {*ENV, *self.variables}:
+                found = ", ".join(sorted(one_only))
                 self.findings.add("W_SLOT_MISMATCH", fields["ja"].where, f"in one language only: {{{found}}}")
         return text
 
@@ -100,10 +101,22 @@ class Parts:
             return None
         source = node.raw.lower() if isinstance(node.value, bool) else node.raw
         try:
-            return compile_expression(source, self.names, self.source.inside(node), wanted=wanted)
+            expression = compile_expression(source, self.names, self.source.inside(node), wanted=wanted)
+            self._check_values(expression)
+            return expression
         except ExpressionError as error:
             self.findings.add(error.code, error.where or node.where, error.plain, error.hint)
             return None
+
+    def _check_values(self, expression: Expression) -> None:
+        """Text that a name is compared with must be a value it can have."""
+        for name, constants in expression.compared.items():
+            known = self.items if name == "item" else [str(value) for value in ENV[name].values] if name in ENV else ()
+            for constant in sorted(str(value) for value in constants if isinstance(value, str)):
+                if known and constant not in known:
+                    code = "E_UNKNOWN_ITEM" if name == "item" else "W_UNKNOWN_VALUE"
+                    message = f"{name} is never {constant!r}"
+                    self.findings.add(code, expression.where, message, did_you_mean(constant, known))
 
     def effects(self, node: Node | None) -> tuple[EffectDef, ...]:
         """``set: {name: expression}``."""

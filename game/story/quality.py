@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from game.story.checks import plain_targets
-from game.story.findings import Findings, did_you_mean
+from game.story.findings import Findings
 from game.story.model import BACK, HOME, Script
 from game.story.reach import Reach, choice_conditions, conditions_of, lines_by_way
 from game.story.text import slots
@@ -13,33 +13,33 @@ __all__ = ["check_quality"]
 
 # GAME.md's rule for a round: up to four lines to choose from.
 _LINES_AT_A_HUB = 4
+# Where one of these was found, a part of the script was not read: what it leads to would only seem unreachable.
+_HIDES_WAYS = frozenset(
+    {
+        *("E_MISSING_TARGET", "E_UNKNOWN_POOL", "E_UNKNOWN_OUTCOME", "E_UNKNOWN_ENDING", "E_UNKNOWN_ITEM"),
+        *("E_UNKNOWN_KEY", "E_MISSING_KEY", "E_UNKNOWN_ACT", "E_UNKNOWN_NAME", "E_BAD_VALUE", "E_NO_WAY_ON"),
+        *("E_MISSING_ID", "E_BAD_ID", "E_DUPLICATE_ID"),
+        *("E_EXPR_SYNTAX", "E_EXPR_TYPE", "E_EXPR_FORBIDDEN", "E_EXPR_SIZE"),
+    }
+)
 
 
 def check_quality(script: Script, findings: Findings) -> None:
     """Warnings and remarks about one script."""
-    reach = Reach(script)
-    _conditions(script, reach, findings)
-    _unreached(script, reach, findings)
+    if not any(finding.code in _HIDES_WAYS for finding in findings.all if finding.where.path == script.path):
+        reach = Reach(script)
+        _conditions(script, reach, findings)
+        _unreached(script, reach, findings)
+        _unused(script, findings)
     _outcomes_end(script, findings)
     _hubs(script, findings)
     _reactions(script, findings)
     _repeated(script, findings)
-    _unused(script, findings)
 
 
 def _conditions(script: Script, reach: Reach, findings: Findings) -> None:
     for condition in conditions_of(script):
         expression = condition.expression
-        for name, constants in expression.compared.items():
-            known = tuple(script.items) if name == "item" else ENV[name].values if name in ENV else ()
-            for constant in constants:
-                if isinstance(constant, str) and known and constant not in known:
-                    findings.add(
-                        "E_UNKNOWN_ITEM" if name == "item" else "W_UNKNOWN_VALUE",
-                        condition.where,
-                        f"{name} is never {constant!r}",
-                        did_you_mean(constant, [str(value) for value in known]),
-                    )
         if not reach.holds(expression):
             findings.add("W_NEVER", condition.where, f"never true: {expression.source!r}, for {condition.what}")
         elif not reach.fails(expression):

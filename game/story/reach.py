@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 
 from game.core.errors import Where
@@ -97,7 +97,7 @@ class Reach:
             for choice in self.script.choices_at(node):
                 if self.holds(choice.condition) and self.holds(choice.needs):
                     self.ids.update((choice.id, *(line.id for line in choice.texts)))
-                    self._apply(choice.effects)
+                    self._apply(choice.effects, tuple(choice_conditions(choice)))
                     out += self._targets(choice.to)
         return out
 
@@ -110,26 +110,28 @@ class Reach:
                 break
         return out
 
-    def _apply(self, effects: Sequence[EffectDef]) -> None:
+    def _apply(self, effects: Sequence[EffectDef], guards: Sequence[Expression] = ()) -> None:
         for effect in effects:
             values = self.values[effect.name]
             if effect.name in self.open:
                 continue
-            found = self._outcomes(effect.value)
+            found = self._outcomes(effect.value, guards)
             if found is None or len(values | found) > _MAX_VALUES:
                 self.open.add(effect.name)
             else:
                 values |= found
 
-    def _outcomes(self, expression: Expression) -> set[Value] | None:
-        """All values an expression can take; None where they cannot be listed."""
+    def _outcomes(self, expression: Expression, guards: Sequence[Expression]) -> set[Value] | None:
+        """All values an expression can take where its guards hold; None where they cannot be listed."""
+        anything: set[Value] | None = {False, True} if expression.type == "bool" else None
         if any(self._is_open(name) for name in expression.names):
-            return None if expression.type != "bool" else {False, True}
+            return anything
         found: set[Value] = set()
-        for scope in self._scopes(expression):
+        for scope in self._scopes(expression, *guards):
             if scope is None:
-                return None if expression.type != "bool" else {False, True}
-            found.add(expression.evaluate(scope))
+                return anything
+            if all(not guard.simple or guard.evaluate(scope) for guard in guards):
+                found.add(expression.evaluate(scope))
         return found
 
     def _is_open(self, name: str) -> bool:
@@ -150,25 +152,28 @@ class Reach:
             return True
         return any(scope is None or bool(expression.evaluate(scope)) == wanted for scope in self._scopes(expression))
 
-    def _scopes(self, expression: Expression) -> Iterator[Scope | None]:
-        """Scopes that can make a difference; None once where there are too many."""
-        names = sorted(expression.names)
-        visits = sorted(expression.visits)
-        seen = sorted(expression.seen)
-        domains: list[Sequence[Value]] = [self._domain(name, expression) for name in names]
-        domains += [self._visit_domain(name, expression) for name in visits]
+    def _scopes(self, *expressions: Expression) -> Iterator[Scope | None]:
+        """Scopes that can make a difference to some expressions; None once where there are too many."""
+        names = sorted({name for e in expressions for name in e.names})
+        visits = sorted({name for e in expressions for name in e.visits})
+        seen = sorted({name for e in expressions for name in e.seen})
+        constants: dict[str, set[Value]] = {}
+        for expression in expressions:
+            for name, values in expression.compared.items():
+                constants.setdefault(name, set()).update(values)
+        domains: list[Sequence[Value]] = [self._domain(name, constants.get(name, set())) for name in names]
+        domains += [self._visit_domain(name, constants.get(f"visits.{name}", set())) for name in visits]
         domains += [(False, True) if name in self.ids or name in self.nodes else (False,) for name in seen]
         if math.prod(map(len, domains)) > _MAX_ASSIGNMENTS:
             yield None
             return
-        for values in itertools.product(*domains):
-            given = dict(zip(names, values, strict=False))
-            counts = {name: int(v) for name, v in zip(visits, values[len(names) :], strict=False)}
-            told = {name for name, v in zip(seen, values[len(names) + len(visits) :], strict=True) if v}
+        for values_ in itertools.product(*domains):
+            given = dict(zip(names, values_, strict=False))
+            counts = {name: int(v) for name, v in zip(visits, values_[len(names) :], strict=False)}
+            told = {name for name, v in zip(seen, values_[len(names) + len(visits) :], strict=True) if v}
             yield Scope(given, counts, told)
 
-    def _domain(self, name: str, expression: Expression) -> Sequence[Value]:
-        constants = expression.compared.get(name, frozenset())
+    def _domain(self, name: str, constants: Collection[Value]) -> Sequence[Value]:
         if name == "item":
             return tuple(self.script.items)
         if name in ENV:
@@ -181,14 +186,13 @@ class Reach:
             return _near(constants, (-1e9, 1e9))
         return (False, True) if variable.type == "bool" else tuple({*constants, *self.values[name], ""})
 
-    def _visit_domain(self, name: str, expression: Expression) -> Sequence[Value]:
+    def _visit_domain(self, name: str, constants: Collection[Value]) -> Sequence[Value]:
         if name not in self.nodes:
             return (0,)
-        constants = expression.compared.get(f"visits.{name}", frozenset())
         return [int(v) for v in _near(constants, (0.0, 100.0)) if float(v) == int(v)]
 
 
-def _near(constants: frozenset[Value], bounds: Sequence[Value]) -> list[Value]:
+def _near(constants: Collection[Value], bounds: Sequence[Value]) -> list[Value]:
     """The bounds, and each constant within them with a neighbour on either side."""
     low, high = float(bounds[0]), float(bounds[-1])
     around = {float(c) + d for c in constants if not isinstance(c, str) for d in (-1.0, -1e-6, 0.0, 1e-6, 1.0)}

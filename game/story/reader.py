@@ -96,7 +96,7 @@ def read_script(path: Path, findings: Findings, text: str | None = None) -> Scri
         return None
     head = source.mapping(source.root, HEAD_KEYS, HEAD_REQUIRED, "a stall")
     around = _surroundings(head.get("person"), source, path, findings)
-    if around is None or "nodes" not in head:
+    if around is None or "nodes" not in head or not source.entries(head["nodes"]):
         return None
     return _Reader(source, findings, head, around).script()
 
@@ -112,8 +112,10 @@ def _surroundings(node: Node | None, source: Source, path: Path, findings: Findi
         return _Surroundings(person, acts, load_faces(folder / "faces.yaml"))
     except BadInput as error:
         known = [file.stem for file in sorted((folder / "people").glob("*.yaml"))]
-        hint = did_you_mean(name, known) if name not in known else None
-        findings.add("E_UNKNOWN_PERSON", node.where, error.message, hint)
+        if name in known:
+            findings.add("E_UNKNOWN_PERSON", node.where, f"{name!r} cannot be used: {error.message}")
+        else:
+            findings.add("E_UNKNOWN_PERSON", node.where, f"no shopkeeper {name!r}", did_you_mean(name, known))
         return None
 
 
@@ -165,6 +167,7 @@ class _Reader:
             variables=self.variables,
             people=people,
             faces=around.faces,
+            items=tuple(self.items),
             longest_item=self._longest_item(),
             currency=currency,
             ids={name: key for name, (key, _) in self.node_keys.items()},

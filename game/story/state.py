@@ -38,7 +38,7 @@ class Memory:
 
 @dataclass(frozen=True)
 class StoryState:
-    """One talk. ``counter`` is the position in the stream of chance ``seed``.
+    """One talk. ``counter`` is the position in the stream of chance ``seed``; ``turn`` counts the waits.
 
     offered: (choice id, id of the text it is shown with). returns: nodes to come back to, innermost last;
     ``after:NODE`` means the way on from NODE.
@@ -49,6 +49,7 @@ class StoryState:
     seed: int
     visit: int = 1
     counter: int = 0
+    turn: int = 0
     node: str = ""
     started: bool = False
     ended: str | None = None
@@ -104,6 +105,7 @@ def save(state: StoryState) -> dict[str, Any]:
         "seed": state.seed,
         "visit": state.visit,
         "counter": state.counter,
+        "turn": state.turn,
         "node": state.node,
         "started": state.started,
         "ended": state.ended,
@@ -145,6 +147,7 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
         seed=reader.whole("seed"),
         visit=reader.whole("visit"),
         counter=reader.whole("counter"),
+        turn=reader.whole("turn"),
         node=node,
         started=started,
         ended=ended,
