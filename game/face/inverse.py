@@ -51,7 +51,13 @@ class FaceSearch:
         # Inverse covariance (F, 3) as its entries 00, 01, 11.
         self.precision = np.stack([d, -b, a], axis=-1) / determinant[:, None]
         self.log_determinant = np.log(determinant)
-        for array in (self.mean, self.covariance, self.precision, self.log_determinant):
+        together = np.zeros((*self.counts, 7))
+        for axis, region in enumerate(model.parts.regions):
+            together = together + region.affinity.reshape(*(-1 if i == axis else 1 for i in range(len(self.counts))), 7)
+        # How far the parts of a face say one and the same emotion (F,), 0..1: on the two axes alone a vein and a smile
+        # may cancel out to a fitting point. Add a multiple of it to a score where faces should make sense.
+        self.coherence = np.asarray((together / len(self.counts)).max(axis=-1).reshape(-1))
+        for array in (self.mean, self.covariance, self.precision, self.log_determinant, self.coherence):
             array.setflags(write=False)
 
     def __len__(self) -> int:
