@@ -1,0 +1,111 @@
+"""The shipped stalls: everything can be reached, nothing repeats, both languages are there, hands find their words."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+
+import pytest
+
+from game.core.paths import ASSETS
+from game.formats.yaml_source import load_yaml
+from game.story import ACTS, TimedText, load_script, shipped_stalls, wrap
+from game.story.text import slots
+
+STALLS = [path.stem for path in shipped_stalls()]
+
+
+@pytest.fixture(scope="module", params=STALLS)
+def stall(request):
+    return next(load_script(path) for path in shipped_stalls() if path.stem == request.param)
+
+
+def test_size_of_the_stall(stall):
+    assert len(stall.nodes) >= 60
+    assert {choice.act for choice in stall.pools["talk"]} == set(ACTS)
+    assert len(stall.endings) >= 8
+
+
+def test_random_walks_reach_every_node_choice_and_ending(stall, talk):
+    nodes, offered, taken, ended = set(), set(), set(), Counter()
+    rng = random.Random(5)
+    walks = 0
+    missing = len(stall.nodes)
+    while missing and walks < 900:
+        player = talk(stall, item=rng.choice(list(stall.items)), seed=walks)
+        if walks % 10 == 9:
+            player = _second_visit(stall, player, walks)
+        walks += 1
+        while not player.beat.ended:
+            offered |= {choice.id for choice in player.beat.choices}
+            player.random_move(rng)
+        taken |= player.state.chosen
+        nodes |= set(player.state.visits)
+        ended[player.beat.ended] += 1
+        missing = len(set(stall.nodes) - nodes) + len(set(stall.choices) - taken)
+    assert set(stall.nodes) - nodes == set()
+    assert set(stall.choices) - offered == set()
+    assert set(stall.choices) - taken == set()
+    assert set(stall.endings) == set(ended)
+
+
+def _second_visit(stall, player, seed):
+    from game.story import Start, advance, begin, memory_of
+
+    state = begin(stall, player.item, seed, memory=memory_of(stall, player.state))
+    player.state, beat = advance(stall, state, Start(), player.env)
+    player.beats = [beat]
+    return player
+
+
+def test_nothing_repeats_word_for_word_within_a_talk(stall, talk):
+    rng = random.Random(6)
+    for seed in range(40):
+        player = talk(stall, item=rng.choice(list(stall.items)), seed=seed)
+        while not player.beat.ended:
+            player.random_move(rng)
+        for language in ("en", "ja"):
+            # Prices may recur: what counts is the wording.
+            said = [line.id for beat in player.beats for line in beat.lines]
+            words = [line.text(language) for beat in player.beats for line in beat.lines]
+            assert len(said) == len(set(said))
+            assert len(words) == len(set(words))
+
+
+def test_there_is_always_something_to_say(stall, talk):
+    """In six rounds of any talk, every move of the player is answered by the shopkeeper."""
+    rng = random.Random(7)
+    for seed in range(40):
+        player = talk(stall, item=rng.choice(list(stall.items)), seed=seed)
+        while not player.beat.ended:
+            player.random_move(rng)
+            assert any(line.speaker == "shopkeeper" for line in player.beat.lines)
+            assert player.beat.ended or sum(choice.act in ACTS for choice in player.beat.choices) == 4
+
+
+def test_words_in_both_languages_fit_the_box(stall):
+    for line in stall.all_lines():
+        for language in ("en", "ja"):
+            text = line.text.get(language)
+            assert text
+            assert len(wrap(text, language)) <= 3
+        assert {name for name, _ in slots(line.text.en)} == {name for name, _ in slots(line.text.ja)}
+        # Japanese is Japanese.
+        assert any("\u3040" <= char <= "\u9fff" for char in line.text.ja) or not any(map(str.isalpha, line.text.en))
+        assert line.text.en.isascii() or not any("\u3040" <= char <= "\u9fff" for char in line.text.en)
+
+
+def test_the_hands_find_their_words(stall):
+    behaviours = load_yaml(ASSETS / "motion" / "behaviours.yaml")["behaviours"].to_python()
+    words = {name: unit["words"] for name, unit in behaviours.items() if "words" in unit}
+    lines = [line for line in stall.all_lines() if line.speaker == "shopkeeper"]
+    for language in ("en", "ja"):
+        found = Counter()
+        moved = 0
+        for line in lines:
+            timed = TimedText(line.text.get(language), language)
+            units = [name for name, lists in words.items() if timed.cues(lists.get(language, ()))]
+            found.update(units)
+            moved += bool(units)
+        assert moved >= 0.5 * len(lines), f"only {moved} of {len(lines)} lines call a gesture in {language}"
+        assert len(found) >= 0.7 * len(words), f"never called in {language}: {sorted(set(words) - set(found))}"
