@@ -33,15 +33,18 @@ def character_keys(seed: int, first: int, count: int) -> Words:
     return _mix(_mix(start) ^ number)
 
 
-def uniform(keys: Words, layer: NDArray[np.intp], started: NDArray[np.int64], purpose: int) -> Floats:
-    """(S,) draws in (0, 1) for S events. purpose tells the draws of one event apart, 0..7."""
-    counter = (started.astype(np.uint64) * np.uint64(8) + layer.astype(np.uint64)) * np.uint64(8) + np.uint64(purpose)
-    bits = _mix(_mix(keys ^ (counter * np.uint64(_GOLDEN))) + np.uint64(purpose + 1))
+def uniform(keys: Words, layer: NDArray[np.intp], started: NDArray[np.int64], count: int) -> Floats:
+    """(S, count) draws in (0, 1) for S events; count at most 8."""
+    event = started.astype(np.uint64) * np.uint64(64) + layer.astype(np.uint64) * np.uint64(8)
+    counter = event[:, None] + np.arange(1, count + 1, dtype=np.uint64)
+    bits = _mix(_mix(keys[:, None] ^ (counter * np.uint64(_GOLDEN))))
     return ((bits >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
 
 
-def factor(uniform01: Floats, spread: Floats) -> Floats:
-    """Log-normal factors with mean 1 and coefficient of variation spread (0: exactly 1). (S,), (S,) -> (S,)."""
-    sigma = np.sqrt(np.log1p(spread * spread))
+def factor(uniform01: Floats, sigma: Floats) -> Floats:
+    """Log-normal factors with mean 1; sigma of the logarithm, 0: exactly 1. Arguments broadcast.
+
+    A coefficient of variation c has sigma = √log(1 + c²).
+    """
     normal = np.clip(ndtri(uniform01), -_FARTHEST, _FARTHEST)
     return np.asarray(np.exp(sigma * normal - 0.5 * sigma * sigma))

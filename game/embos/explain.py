@@ -108,9 +108,9 @@ def _reason(
         return "scores less"
     if slot == running:
         if factors.within[0, at]:
-            left_s = float(state.end_s[character, at]) - time_s
+            left_s = float(state.marks_s[character, at, 0]) - time_s
             if factors.score[0, at].max() > factors.score[0, at, place]:
-                return f"kept: started less than {t.least_s[at]:g} s ago"
+                return f"kept: started less than {t.least_s[slot]:g} s ago"
             return f"kept: still within its duration, {max(left_s, 0.0):.1f} s left"
         if t.rest[slot]:
             return "rest: nothing else scores more"

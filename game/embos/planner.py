@@ -7,7 +7,6 @@ stands. The result is the same as judging every frame.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,31 +34,21 @@ class Planner:
         self.library = library
         self.config = config or PlannerConfig()
         self.tables: PlannerTables = build_tables(library, self.config)
-        offsets = np.where(self.tables.unit[:, None] >= 0, library.stroke_offset_s[self.tables.unit], 0.0)
-        self._stroke_s = offsets
-        self._unit_of = np.append(self.tables.unit, -1)
 
     def start(self, n: int, rng_seed: int, first: int = 0) -> PlannerState:
         """n characters before their first tick: character first + i draws the same in any company."""
         t = self.tables
         layers = len(t.layers)
         running = np.tile(t.initial, (n, 1))
-        never = np.full((n, layers), -np.inf)
-        zero = np.zeros((n, layers))
         decisions = Decisions(
-            unit=self._unit_of[running],
+            unit=np.where(running < t.slots, t.unit[np.minimum(running, t.slots - 1)], -1),
             started=np.zeros((n, layers), dtype=bool),
-            start_time_s=zero,
-            duration_s=zero,
-            emotion_weights=np.zeros((n, layers, 7)),
-            variant_pick=zero,
-            stroke_s=zero,
+            numbers=np.zeros((n, layers, 11)),
         )
         return PlannerState(
             key=character_keys(rng_seed, first, n),
             running=running,
-            end_s=never,
-            hold_s=never,
+            marks_s=np.full((n, layers, 2), -np.inf),
             wait_s=np.full((n, t.slots), -np.inf),
             starts=np.zeros((n, layers), dtype=np.int64),
             emotion=np.full((n, 7), -9.0),
@@ -87,21 +76,20 @@ class Planner:
                 seen=f"{emotion.shape} and {words.shape}",
             )
         now = signal.time_s + 0.5 * dt_s
-        same_words = not (words != state.words).any()
-        moved_by = np.abs(emotion - state.emotion)
-        if same_words and now <= state.soonest_s and moved_by.max(initial=0.0) <= self.config.tolerance:
+        said_anew, moved_by = words != state.words, np.abs(emotion - state.emotion)
+        new_words = np.count_nonzero(said_anew)
+        moving = np.count_nonzero(moved_by > self.config.tolerance)
+        if not new_words and not moving and now <= state.soonest_s:
             return _standing(state)
-        moved = moved_by.max(axis=1) > self.config.tolerance
-        due = moved | (state.next_s < now)
-        if not same_words:
-            due |= (words != state.words).any(axis=1)
-        rows = np.flatnonzero(due)
-        if rows.size == 0:
-            return _standing(state)
-        if moved.any():
-            state = self._feel(state, emotion, np.flatnonzero(moved))
-        if not same_words:
-            state = replace(state, words=words.copy())
+        due = state.next_s < now
+        if moving:
+            moved = moved_by.max(axis=1) > self.config.tolerance
+            due |= moved
+            state = self._feel(state, emotion, moved.nonzero()[0])
+        if new_words:
+            due |= said_anew.any(axis=1)
+            state = state.renewed(words=words.copy())
+        rows = due.nonzero()[0]
         # Pieces that stay in the cache; a character's result does not depend on its piece.
         pieces = [rows[i : i + CHUNK] for i in range(0, rows.size, CHUNK)]
         judged = [self.evaluate(state, piece, words[piece], now) for piece in pieces]
@@ -123,23 +111,25 @@ class Planner:
         felt, phi = state.emotion.copy(), state.phi_state.copy()
         felt[rows] = emotion[rows]
         phi[rows] = self.tables.phi_state(felt[rows])
-        return replace(state, emotion=felt, phi_state=phi)
+        return state.renewed(emotion=felt, phi_state=phi)
 
     def evaluate(self, state: PlannerState, rows: Ints, words: Floats, now: float) -> Factors:
         """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
         t, config = self.tables, self.config
         count, layers, width = len(rows), len(t.layers), t.width
         running, wait_s, phi = state.running[rows], state.wait_s[rows], state.phi_state[rows]
-        end_s, hold_s = state.end_s[rows], state.hold_s[rows]
-        within = end_s >= now
+        marks_s = state.marks_s[rows]
+        ahead = marks_s >= now
+        within, held = ahead[..., 0], ahead[..., 1]
         waits = wait_s >= now
         time = np.where(waits, t.minimum, config.steady)
         row, layer = within.nonzero()
         time[row, running[row, layer]] = 1.0  # keep going
-        own = running[:, t.gesture_layer, None]
-        # A gesture under way runs to its end though its word has passed.
-        under_way = (own == t.gesture_slots) & within[:, t.gesture_layer, None]
-        phi[:, t.gestures] *= np.maximum(words, under_way)
+        if np.count_nonzero(within[:, t.gesture_layer]):
+            # A gesture under way runs to its end though its word has passed.
+            under_way = running[:, t.gesture_layer, None] == t.gesture_slots
+            words = np.maximum(words, under_way & within[:, t.gesture_layer, None])
+        phi[:, t.gestures] *= words
         follow = t.follow[running]
         score = (time * phi).reshape(count, layers, width)
         score *= follow
@@ -154,16 +144,16 @@ class Planner:
                 score[:, at] *= link
             linkage.append(link)
             best = score[:, at].argmax(axis=1) + at * width
-            if (best != running[:, at]).any():
-                mine = running[:, at]
-                best = np.where(self._kept(at, mine, best, score[:, at], time, link, hold_s[:, at] >= now), mine, best)
+            mine = running[:, at]
+            if np.count_nonzero(best != mine):
+                best = np.where(self._kept(at, mine, best, score[:, at], time, link, held[:, at]), mine, best)
             chosen[:, at] = best
         # A unit that wins again after its waiting time starts again; while it waits it is merely kept.
         time_of = time[np.arange(count)[:, None], chosen]
         again = (chosen == running) & (time_of == config.steady) & t.real[chosen]
-        next_s = np.where(waits, wait_s, np.inf).min(axis=1)
-        next_s = np.minimum(next_s, np.where(within, end_s, np.inf).min(axis=1))
-        next_s = np.minimum(next_s, np.where(hold_s >= now, hold_s, np.inf).min(axis=1))
+        next_s = np.minimum(
+            np.where(waits, wait_s, np.inf).min(axis=1), np.where(ahead, marks_s, np.inf).min(axis=(1, 2))
+        )
         shape = (count, layers, width)
         return Factors(follow, time.reshape(shape), phi.reshape(shape), linkage, score, chosen, within, again, next_s)
 
@@ -186,7 +176,6 @@ class Planner:
         self, state: PlannerState, rows: Ints, judged: list[Factors], time_s: float, now: float
     ) -> tuple[PlannerState, Decisions]:
         """Start what was chosen, set durations and waiting times, note when to look again."""
-        before = state.decisions
         chosen, again, soon = (
             getattr(judged[0], name) if len(judged) == 1 else np.concatenate([getattr(f, name) for f in judged])
             for name in ("chosen", "again", "next_s")
@@ -197,57 +186,60 @@ class Planner:
         started = changed | again
         row, layer = started.nonzero()
         if row.size == 0:
-            state = replace(state, next_s=next_s, soonest_s=float(next_s.min()))
-            return _standing(state)
-        new, decided = self._begin(state, rows[row], layer, chosen[row, layer], changed[row, layer], time_s, now)
-        np.minimum.at(next_s, rows[row], new.pop("soon"))
-        flags = np.zeros_like(before.started)
+            return _standing(state.renewed(next_s=next_s, soonest_s=float(next_s.min())))
+        flags = np.zeros(state.running.shape, dtype=bool)
         flags[rows] = started
-        decisions = Decisions(started=flags, **decided)
-        state = replace(state, decisions=decisions, next_s=next_s, soonest_s=float(next_s.min()), **new)
-        return state, decisions
+        at = (row, layer)
+        state, soon = self._begin(state, rows[row], layer, chosen[at], changed[at], flags, time_s, now)
+        np.minimum.at(next_s, rows[row], soon)
+        state = state.renewed(next_s=next_s, soonest_s=float(next_s.min()))
+        return state, state.decisions
 
     def _begin(
-        self, state: PlannerState, who: Ints, layer: Ints, slot: Ints, changed: NDArray[Any], time_s: float, now: float
-    ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Start slots (S,) in layers (S,) of characters (S,) -> the state's and the decisions' new arrays."""
-        t = self.tables
-        running, end, hold = state.running.copy(), state.end_s.copy(), state.hold_s.copy()
-        wait, starts = state.wait_s.copy(), state.starts.copy()
-        # A unit cut short has had its duration: its waiting time begins now.
-        left, ended_s = running[who, layer], end[who, layer]
-        cut = changed & (ended_s >= now)
-        wait[who[cut], left[cut]] -= ended_s[cut] - time_s
+        self,
+        state: PlannerState,
+        who: Ints,
+        layer: Ints,
+        slot: Ints,
+        changed: NDArray[Any],
+        flags: NDArray[np.bool_],
+        time_s: float,
+        now: float,
+    ) -> tuple[PlannerState, Floats]:
+        """Start slots (S,) in layers (S,) of characters (S,) -> the new state, and (S,) when to look again."""
+        t, old = self.tables, state.decisions
+        running, marks_s, wait_s = state.running.copy(), state.marks_s.copy(), state.wait_s.copy()
+        starts, numbers, unit = state.starts.copy(), old.numbers.copy(), old.unit.copy()
         soon = np.full(len(who), np.inf)
-        soon[cut] = wait[who[cut], left[cut]]
-        key, counter, spread = state.key[who], starts[who, layer], t.cv[slot] * self.config.spread
+        # A unit cut short has had its duration: its waiting time begins now.
+        ended_s = marks_s[who, layer, 0]
+        cut = (changed & (ended_s >= now)).nonzero()[0]
+        if cut.size:
+            left = (who[cut], running[who[cut], layer[cut]])
+            wait_s[left] -= ended_s[cut] - time_s
+            soon[cut] = np.maximum(wait_s[left], now)
+        counter = starts[who, layer]
+        chance = uniform(state.key[who], layer, counter, 3)
         weights = mix_weights(state.emotion[who], t.intensity[slot], t.exists[slot], self.config.radius)
-        duration_s = mix(t.duration_s[slot], weights) * factor(uniform(key, layer, counter, 0), spread)
-        waiting_s = mix(t.waiting_s[slot], weights) * factor(uniform(key, layer, counter, 1), spread)
-        idle = t.rest[slot]
-        duration_s = np.where(idle, 0.0, np.maximum(duration_s, t.least_s[layer]))
-        running[who, layer] = slot
-        end[who, layer] = np.where(idle, -np.inf, time_s + duration_s)
-        hold[who, layer] = np.where(idle, -np.inf, time_s + t.least_s[layer])
-        wait[who, slot] = np.where(idle, -np.inf, time_s + duration_s + waiting_s)
-        starts[who, layer] += 1
-        soon = np.where(idle, soon, np.minimum(soon, np.minimum(end[who, layer], hold[who, layer])))
-        names = ("unit", "start_time_s", "duration_s", "emotion_weights", "variant_pick", "stroke_s")
-        decided = {name: getattr(state.decisions, name).copy() for name in names}
-        decided["unit"][who, layer] = t.unit[slot]
-        decided["start_time_s"][who, layer] = time_s
-        decided["duration_s"][who, layer] = duration_s
-        decided["emotion_weights"][who, layer] = weights
-        decided["variant_pick"][who, layer] = uniform(key, layer, counter, 2)
-        strokes = layer == t.gesture_layer
-        decided["stroke_s"][who, layer] = np.where(strokes, mix(self._stroke_s[slot], weights), 0.0)
-        new = {"running": running, "end_s": end, "hold_s": hold, "wait_s": wait, "starts": starts, "soon": soon}
-        return new, decided
+        mixed = mix(t.timing_s[slot], weights[:, None, :])  # (S, 3): L_d, L_w, start to stroke; 0 for rest
+        mixed[:, :2] *= factor(chance[:, :2], t.sigma[slot])
+        duration_s = np.maximum(mixed[:, 0], t.least_s[slot])
+        end_s = time_s + duration_s
+        new_marks = np.stack([end_s, time_s + t.least_s[slot]], axis=1)
+        running[who, layer], starts[who, layer], unit[who, layer] = slot, counter + 1, t.unit[slot]
+        marks_s[who, layer], wait_s[who, slot] = new_marks, end_s + mixed[:, 1]
+        start_s = np.full_like(end_s, time_s)
+        head = np.stack([start_s, duration_s, chance[:, 2], mixed[:, 2]], axis=1)
+        numbers[who, layer] = np.concatenate([head, weights], axis=1)
+        soon = np.minimum(soon, np.where(new_marks >= now, new_marks, np.inf).min(axis=1))
+        decisions = Decisions(unit, flags, numbers)
+        state = state.renewed(running=running, marks_s=marks_s, wait_s=wait_s, starts=starts, decisions=decisions)
+        return state, soon
 
 
 def _standing(state: PlannerState) -> tuple[PlannerState, Decisions]:
-    """The tick in which nothing happens."""
-    if state.decisions.started.any():
-        decisions = replace(state.decisions, started=np.zeros_like(state.decisions.started))
-        state = replace(state, decisions=decisions)
+    """The tick in which nothing starts."""
+    old = state.decisions
+    if np.count_nonzero(old.started):
+        state = state.renewed(decisions=Decisions(old.unit, np.zeros_like(old.started), old.numbers))
     return state, state.decisions

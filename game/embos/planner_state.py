@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,35 +33,50 @@ class Decisions:
     """One unit per layer, columns in the order of the planner's layers.
 
     unit: (n, L) index into library.units. started: (n, L) bool, True in the tick a unit starts (again).
-    start_time_s, duration_s: (n, L); a rest unit has duration 0. emotion_weights: (n, L, 7) normalised weights of
-    eq. 5 at the start, all 0 for rest. variant_pick: (n, L) in [0, 1). stroke_s: (n, L) seconds from the start to
-    the stroke of the mixed variants (gestures), 0 elsewhere.
+    numbers: (n, L, 11), named by the properties: start_time_s, duration_s (n, L), 0 for a rest unit; variant_pick
+    (n, L) in [0, 1); stroke_s (n, L) seconds from the start to the stroke of the mixed variants (gestures; 0
+    elsewhere); emotion_weights (n, L, 7) normalised weights of eq. 5 at the start, all 0 for rest.
     """
 
     unit: Ints
     started: Bools
-    start_time_s: Floats
-    duration_s: Floats
-    emotion_weights: Floats
-    variant_pick: Floats
-    stroke_s: Floats
+    numbers: Floats
+
+    @property
+    def start_time_s(self) -> Floats:
+        return self.numbers[..., 0]
+
+    @property
+    def duration_s(self) -> Floats:
+        return self.numbers[..., 1]
+
+    @property
+    def variant_pick(self) -> Floats:
+        return self.numbers[..., 2]
+
+    @property
+    def stroke_s(self) -> Floats:
+        return self.numbers[..., 3]
+
+    @property
+    def emotion_weights(self) -> Floats:
+        return self.numbers[..., 4:]
 
 
 @dataclass(frozen=True, eq=False)
 class PlannerState:
     """Where n characters stand; never changed in place, so an old state can be kept, saved or compared.
 
-    key: (n,) uint64 of each character's draws. running: (n, L) slots. end_s: (n, L) end of the running unit's
-    duration, −inf for rest. hold_s: (n, L) until when it may not be given up. wait_s: (n, P) end of each slot's
-    waiting time, −inf if it never ran. starts: (n, L) how often the layer has started a unit. emotion: (n, 7) and
-    phi_state: (n, P) as last computed. words: (n, G) of the last tick. next_s: (n,) when the decision may change
-    by time alone. decisions: the last tick's.
+    key: (n,) uint64 of each character's draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running
+    unit's duration, and until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf
+    if it never ran. starts: (n, L) how often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P)
+    as last computed. words: (n, G) of the last tick. next_s: (n,) when the decision may change by time alone,
+    soonest_s the least of them. decisions: the last tick's.
     """
 
     key: NDArray[np.uint64]
     running: Ints
-    end_s: Floats
-    hold_s: Floats
+    marks_s: Floats
     wait_s: Floats
     starts: NDArray[np.int64]
     emotion: Floats
@@ -72,6 +88,10 @@ class PlannerState:
 
     def __len__(self) -> int:
         return len(self.key)
+
+    def renewed(self, **changes: Any) -> PlannerState:
+        """A state with some fields replaced (dataclasses.replace, without its overhead)."""
+        return PlannerState(**{**vars(self), **changes})
 
 
 @dataclass(frozen=True, eq=False)

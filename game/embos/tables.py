@@ -29,10 +29,11 @@ class PlannerTables:
 
     unit: (P,) index into library.units, −1 where empty. real: (P,) bool, a unit that is not rest. rest: (P,) bool.
     follow: (P + 1, M) ω_c from a slot to its layer's slots; row P is "nothing ran yet". blocks: (P + 1, L, M) ω_l
-    of every slot below a running slot. intensity, exists, duration_s, waiting_s: (P, 7); *_t: transposed; cv: (P,).
+    of every slot below a running slot. intensity, exists: (P, 7); *_t: transposed. timing_s:
+    (P, 3, 7) L_d, L_w and seconds from start to stroke. sigma: (P, 1) of the random factors' logarithm.
     constant_state: (P,) φ_state of rest slots, 0 elsewhere, −1 in empty ones. gesture_slots: (G,) consecutive
     slots of the gestures proper, gestures: the same as a slice. count: (L, 1) units that take part in the ranking;
-    not_real, place: (P,) for it. minimum: (P,) φ_time while waiting. least_s: (L,). initial: (L,) slots.
+    not_real, place: (P,) for it. minimum: (P,) φ_time while waiting. least_s: (P,). initial: (L,) slots.
     """
 
     layers: tuple[str, ...]
@@ -48,9 +49,8 @@ class PlannerTables:
     exists_t: Floats
     not_real: NDArray[np.int64]
     place: NDArray[np.int64]
-    duration_s: Floats
-    waiting_s: Floats
-    cv: Floats
+    timing_s: Floats
+    sigma: Floats
     constant_state: Floats
     gesture_slots: Ints
     gestures: slice
@@ -143,6 +143,11 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         dtype=np.intp,
     )
     real = used & ~rest
+    strokes_s = np.where(
+        (np.array([u.layer for u in library.units]) == "gesture")[:, None], library.stroke_offset_s, 0.0
+    )
+    timing_s = np.stack([library.duration_s, library.waiting_s, strokes_s], axis=1)
+    least_s = np.array([config.least_s.get(layer, 0.0) for layer in config.layers]).repeat(width)
     gestures = np.flatnonzero(real & np.isin(unit, library.gestures))
     intensity = np.where(used[:, None], library.intensity[unit], 0.0)
     exists = np.where(used[:, None], library.exists[unit], False).astype(np.float64)
@@ -160,15 +165,14 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         exists_t=np.ascontiguousarray(exists.T),
         not_real=np.where(real, 0, int(4.0 / _STEP)).astype(np.int64),
         place=np.tile(np.arange(width, dtype=np.int64), layers),
-        duration_s=np.where(used[:, None], library.duration_s[unit], 0.0),
-        waiting_s=np.where(used[:, None], library.waiting_s[unit], 0.0),
-        cv=np.where(used, library.duration_cv[unit], 0.0),
+        timing_s=np.where(used[:, None, None], timing_s[unit], 0.0),
+        sigma=np.sqrt(np.log1p((np.where(used, library.duration_cv[unit], 0.0) * config.spread) ** 2))[:, None],
         constant_state=np.where(rest, threshold, np.where(used, 0.0, -1.0)),
         gesture_slots=gestures,
         gestures=slice(int(gestures[0]), int(gestures[-1]) + 1) if len(gestures) else slice(0, 0),
         gesture_layer=config.layers.index("gesture"),
         count=real.reshape(layers, width).sum(axis=1, keepdims=True).clip(1).astype(np.float64),
-        least_s=np.array([config.least_s.get(layer, 0.0) for layer in config.layers]),
+        least_s=np.where(real, least_s, 0.0),
         minimum=np.array([config.minimum[layer] for layer in config.layers]).repeat(width),
         initial=initial,
         presence=config.presence,
