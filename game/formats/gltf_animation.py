@@ -26,6 +26,7 @@ def build_animations(
 ) -> tuple[GltfAnimation, ...]:
     """All animations. Raises BadInput for times that go back, values that do not fit, two channels on one property."""
     animations = []
+    accessors = document.get("accessors", [])
     for index, source in enumerate(document.get("animations", [])):
         channels: list[GltfChannel] = []
         taken: set[tuple[int, str]] = set()
@@ -53,7 +54,7 @@ def build_animations(
                     report.refuse((*pointer, "target"), "weights of a node without morph targets")
             sampler = source["samplers"][sampler_index]
             place = ("animations", index, "samplers", sampler_index)
-            channels.append(_channel(node.index, path, width, sampler, buffers, report, place))
+            channels.append(_channel(node.index, path, width, sampler, accessors, buffers, report, place))
         animations.append(GltfAnimation(source.get("name", ""), tuple(channels)))
     return tuple(animations)
 
@@ -63,6 +64,7 @@ def _channel(
     path: str,
     width: int,
     sampler: Mapping[str, Any],
+    accessors: Sequence[Mapping[str, Any]],
     buffers: Buffers,
     report: Report,
     pointer: tuple[str | int, ...],
@@ -75,6 +77,8 @@ def _channel(
     steps = np.diff(times_s)
     if times_s[0] < 0 or np.any(steps < 0):
         report.refuse((*pointer, "input"), expected="times from 0 that increase", seen="times that go back")
+    if not {"min", "max"} <= accessors[sampler["input"]].keys():
+        report.note((*pointer, "input"), "times without min and max")
     if np.any(steps == 0):
         report.note((*pointer, "input"), "the same time twice")
     values = buffers.accessor(sampler["output"])

@@ -138,7 +138,7 @@ class Buffers:
                 accessor["type"],
                 pointer,
             )
-        elif accessor.get("byteOffset"):
+        elif "byteOffset" in accessor:
             self._report.refuse((*pointer, "byteOffset"), "given without a bufferView")
         if "sparse" in accessor:
             sparse, at = accessor["sparse"], (*pointer, "sparse")

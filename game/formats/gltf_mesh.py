@@ -111,6 +111,8 @@ class _MeshBuilder:
         else:
             fits = letter == "f" or (letter in "BI" and normalised and semantic in ("TEXCOORD", "COLOR", "WEIGHTS"))
             fits |= self.quantised and letter in _QUANTISED.get(semantic, "")
+        if semantic == "POSITION" and not {"min", "max"} <= accessor.keys():
+            self.report.note(pointer, "positions without min and max")
         if not fits or accessor["type"] not in _TYPES[semantic]:
             seen = f"{accessor['type']} of {code.name}{' normalised' if normalised else ''}"
             self.report.refuse(pointer, expected=f"a format allowed for {semantic}", seen=seen)
@@ -150,6 +152,8 @@ class _MeshBuilder:
             self.converted[key] = self.buffers.accessor(index).astype(np.uint32)
             self.converted[key].setflags(write=False)
         data = self.converted[key]
+        if data.max() == np.iinfo(COMPONENTS[accessor["componentType"]]).max:
+            self.report.note(pointer, "an index that means primitive restart")
         if data.max() >= count:
             self.report.refuse(pointer, expected=f"indices below {count}", seen=int(data.max()))
         return data

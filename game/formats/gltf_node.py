@@ -63,6 +63,8 @@ def _node(index: int, source: Mapping[str, Any], parent: int, report: Report) ->
             report.note((*pointer, "rotation"), f"a quaternion of length {length:.4f}, normalised")
         rotation = rotation / length
         matrix = _compose(translation, rotation, scale)
+    if "weights" in source and "mesh" not in source:
+        report.note((*pointer, "weights"), "morph weights without a mesh")
     for array in (translation, rotation, scale, matrix):
         array.setflags(write=False)
     return GltfNode(

@@ -163,7 +163,8 @@ _MATERIAL = _named(
         "normalTexture": _NORMAL_TEXTURE,
         "occlusionTexture": _OCCLUSION_TEXTURE,
         "emissiveTexture": _TEXTURE,
-        "emissiveFactor": _vector(3, _UNIT),
+        # Beyond 1 in files from before KHR_materials_emissive_strength.
+        "emissiveFactor": _vector(3, Number(0.0, 1e4)),
         "alphaMode": Text(("OPAQUE", "MASK", "BLEND")),
         "alphaCutoff": Number(0),
         "doubleSided": Flag(),

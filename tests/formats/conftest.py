@@ -33,7 +33,7 @@ class SmallModel:
         }
         positions = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float32)
         attributes = {
-            "POSITION": self.accessor(positions, "VEC3"),
+            "POSITION": self.accessor(positions, "VEC3", min=[0, 0, 0], max=[1, 1, 1]),
             "NORMAL": self.accessor(np.tile(np.float32([0, 0, 1]), (4, 1)), "VEC3"),
             "JOINTS_0": self.accessor(np.array([[0, 1, 0, 0]] * 4, np.uint8), "VEC4"),
             "WEIGHTS_0": self.accessor(np.array([[255, 0, 0, 0]] * 4, np.uint8), "VEC4", normalized=True),
@@ -53,7 +53,7 @@ class SmallModel:
                 "extras": {"class": "skin"},
             }
         ]
-        times = self.accessor(np.array([0, 0.5, 1], np.float32), "SCALAR")
+        times = self.accessor(np.array([0, 0.5, 1], np.float32), "SCALAR", min=[0], max=[1])
         turn = np.array([[0, 0, 0, 1], [0, 0, 0.5**0.5, 0.5**0.5], [0, 0, 1, 0]], np.float32)
         self.document["animations"] = [
             {
