@@ -150,16 +150,16 @@ def start_life(n: int, seed: int, first: int = 0) -> Life:
     """Characters first, first + 1, … of a seed."""
     key = character_keys(seed ^ 0x11FE, first, n)
     zero = np.zeros(n, dtype=np.int64)
-    draw = [uniform(key, zero + purpose, zero, 7) for purpose in range(2 * _SWAYS + 3)]
+    draw = np.concatenate([uniform(key, zero + stream, zero, 8) for stream in (2, 3)], axis=1)
     return Life(
         key=key,
-        phase=np.stack(draw[: 2 * _SWAYS], axis=1).reshape(n, _SWAYS, 2),
+        phase=draw[:, : 2 * _SWAYS].reshape(n, _SWAYS, 2),
         clock=np.zeros(n),
-        breath=draw[-1],
+        breath=draw[:, -1],
         dart=np.zeros((n, 2)),
-        dart_left_s=draw[-2],
+        dart_left_s=draw[:, -2],
         dart_count=zero,
-        blink_left_s=0.5 + 4.0 * draw[-3],
+        blink_left_s=0.5 + 4.0 * draw[:, -3],
         blink_count=zero,
         blink_age_s=np.full(n, 10.0),
         eye=np.zeros((n, 2)),
@@ -262,7 +262,7 @@ def _draw(state: Life, dart_hz: Floats, dart_size: Floats, blink_hz: Floats, dt_
     due = np.flatnonzero(dart_left <= 0.0)
     if due.size:
         key, count = state.key[due], state.dart_count[due]
-        draws = [uniform(key, np.zeros(due.size, dtype=np.intp), count, purpose) for purpose in range(4)]
+        draws = uniform(key, np.zeros(due.size, dtype=np.intp), count, 4).T
         dart, left, counts = state.dart.copy(), dart_left.copy(), state.dart_count.copy()
         # Every third dart returns to the target itself, so the gaze does not wander off.
         size = np.where(draws[3] < 0.33, 0.0, dart_size[due] * 2.0)
@@ -274,7 +274,7 @@ def _draw(state: Life, dart_hz: Floats, dart_size: Floats, blink_hz: Floats, dt_
     due = np.flatnonzero(blink_left <= 0.0)
     if due.size:
         key, count = state.key[due], state.blink_count[due]
-        first, second = (uniform(key, np.ones(due.size, dtype=np.intp), count, purpose) for purpose in range(2))
+        first, second = uniform(key, np.ones(due.size, dtype=np.intp), count, 2).T
         left, age, counts = blink_left.copy(), state.blink_age_s.copy(), state.blink_count.copy()
         # One blink in eight comes double.
         left[due] = np.where(second < 0.125, 0.3, (0.3 + 1.4 * first) / blink_hz[due])

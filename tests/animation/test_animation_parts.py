@@ -1,0 +1,157 @@
+"""The pieces a tick is made of: bilinear quaternions, limbs, collisions, rows, transitions' curves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from game.animation import bilinear as bl
+from game.animation import channels as ch
+from game.animation import collision, limbs
+from game.animation import rows as rw
+from game.core import quaternion as quat
+from game.core.errors import BadInput
+from game.core.humanoid import REFERENCE
+from game.embos import MotionUnit, UnitLibrary, Variant
+
+
+def random_quaternions(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
+    return quat.normalize(np.random.default_rng(seed).normal(size=(*shape, 4))).astype(np.float32)
+
+
+def test_bilinear_maps_are_the_quaternion_algebra() -> None:
+    a, b = random_quaternions((3, 5), 1), random_quaternions((3, 5), 2)
+    np.testing.assert_allclose(bl.multiply(a, b), quat.multiply(a, b), atol=1e-6)
+    np.testing.assert_allclose(bl.rotation_matrix(a), quat.to_matrix(a), atol=1e-6)
+    back = bl.from_matrix(np.ascontiguousarray(quat.to_matrix(a)))
+    np.testing.assert_allclose(np.abs((back * a).sum(-1)), 1.0, atol=1e-6)
+    half_turns = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], dtype=np.float32)
+    back = bl.from_matrix(quat.to_matrix(half_turns))
+    np.testing.assert_allclose(np.abs((back * half_turns).sum(-1)), 1.0, atol=1e-6)
+
+
+def arm(elbow_deg: float) -> tuple[np.ndarray, ...]:
+    root = np.zeros((1, 1, 3), dtype=np.float32)
+    joint = np.array([[[0.216, 0, 0]]], dtype=np.float32)
+    angle = np.radians(elbow_deg)
+    end = joint + 0.206 * np.array([[[np.cos(angle), 0, np.sin(angle)]]], dtype=np.float32)
+    hinge = np.array([[[0, 1, 0]]], dtype=np.float32)
+    return root, joint, end.astype(np.float32), hinge
+
+
+def reached(root: np.ndarray, joint: np.ndarray, end: np.ndarray, fix: limbs.LimbFix) -> np.ndarray:
+    at_root, at_joint, _ = (Rotation.from_quat(q[0, 0]) if q.shape[-1] == 4 else None for q in fix)
+    assert at_root is not None
+    assert at_joint is not None
+    upper, lower = (joint - root)[0, 0], (end - joint)[0, 0]
+    return np.asarray(at_root.apply(upper + at_joint.apply(lower)))
+
+
+@pytest.mark.parametrize("elbow", [0.0, 20.0, 90.0, 140.0])
+@pytest.mark.parametrize("target", [(0.2, 0.1, 0.2), (-0.1, 0.25, 0.15), (0.05, -0.3, 0.1), (0.12, 0.0, 0.02)])
+def test_limbs_reach_their_targets(elbow: float, target: tuple[float, float, float]) -> None:
+    root, joint, end, hinge = arm(elbow)
+    goal = np.array([[target]], dtype=np.float32)
+    fix = limbs.solve_limbs(root, joint, end, goal, hinge)
+    np.testing.assert_allclose(reached(root, joint, end, fix), target, atol=2e-3)
+
+
+def test_a_limb_that_is_there_stays_as_it_is() -> None:
+    root, joint, end, hinge = arm(70.0)
+    fix = limbs.solve_limbs(root, joint, end, end, hinge, np.array([True]))
+    for rotation in fix[:2]:
+        assert abs(float(rotation[0, 0, 3])) > 1 - 1e-6
+
+
+def test_reach_is_clamped_softly() -> None:
+    root, joint, end, hinge = arm(40.0)
+    full = 0.422
+    distances = np.linspace(0.85, 1.3, 60) * full
+    got = []
+    for distance in distances:
+        goal = np.array([[[distance, 0, 0]]], dtype=np.float32)
+        got.append(
+            np.linalg.norm(
+                reached(root, joint, end, limbs.solve_limbs(root, joint, end, goal, hinge, np.array([True])))
+            )
+        )
+    ratio = np.array(got) / full
+    np.testing.assert_allclose(ratio[distances < 0.92 * full], (distances / full)[distances < 0.92 * full], atol=3e-3)
+    assert ratio.max() < limbs.REACH_FULL + 1e-3
+    assert (np.diff(ratio) > -1e-3).all()
+
+
+def body_maps() -> np.ndarray:
+    rest = REFERENCE.rest_model.astype(np.float32)
+    return collision.body_frames({n: rest[None, REFERENCE.index[n]] for n in collision.BODY_JOINTS})
+
+
+def test_points_inside_the_body_are_pushed_to_its_surface_and_others_left_alone() -> None:
+    maps = body_maps()
+    points = np.full((1, 2, 7, 3), 5.0, dtype=np.float32)
+    assert not collision.push_out(maps, points).any()
+    points[0, 0, 1] = (0.0, 0.82, 0.10)  # the left palm 1 cm inside the breast
+    push = collision.push_out(maps, points)
+    assert push[0, 0, 2] > 0.02
+    assert abs(push[0, 0, 0]) < 1e-3
+    assert not push[0, 1].any()
+    points[0, 0, 1] += push[0, 0]
+    assert np.linalg.norm(collision.push_out(maps, points)[0, 0]) < 0.25 * np.linalg.norm(push[0, 0])
+
+
+def test_the_gradient_is_that_of_the_distance() -> None:
+    maps = body_maps()
+    rng = np.random.default_rng(3)
+    points = (np.array([0, 0.9, 0]) + rng.normal(size=(1, 40, 3)) * 0.2).astype(np.float32)
+    distance, away = collision.body_distance(maps, points)
+    assert distance.shape == (1, 6, 40)
+    np.testing.assert_allclose(np.linalg.norm(away, axis=2), 1.0, atol=1e-4)
+    moved, _ = collision.body_distance(maps, points + 1e-3 * away[:, 0].swapaxes(-1, -2))
+    assert (moved[:, 0] > distance[:, 0]).all()
+
+
+def test_hands_on_the_table_are_lifted_and_below_its_edge_drawn_back() -> None:
+    maps = body_maps()
+    points = np.full((1, 2, 7, 3), 5.0, dtype=np.float32)
+    points[0, 0, 0] = (0.2, 0.58, 0.4)
+    points[0, 1, 0] = (-0.3, 0.50, 0.14)
+    push = collision.push_out(maps, points)
+    np.testing.assert_allclose(points[0, 0, 0, 1] + push[0, 0, 1], 0.585 + 0.027 + 0.004, atol=1e-3)
+    assert push[0, 1, 2] < -0.005
+    assert abs(push[0, 1, 1]) < 0.01
+
+
+def test_a_looped_span_has_no_seam() -> None:
+    rng = np.random.default_rng(0)
+    walk = np.cumsum(rng.normal(size=(90, ch.CHANNELS)) * 0.004, axis=0) + rw.REST_ROW
+    loop = rw.seamless_loop(walk.astype(np.float32))
+    np.testing.assert_array_equal(loop[0], loop[-1])
+    steps = np.abs(np.diff(np.concatenate([loop, loop[1:3]]), axis=0))[:, : ch.ROOT.stop]
+    assert steps.max() < 3 * np.abs(np.diff(walk, axis=0)).max()
+
+
+def test_traces_of_a_unit_begin_and_end_with_nothing() -> None:
+    count = 40
+    u = np.linspace(0, 1, count)
+    q = np.tile(quat.IDENTITY, (count, ch.JOINTS, 1))
+    q[:, REFERENCE.index["chest"]] = quat.from_axis_angle(np.array([1.0, 0, 0]), 0.4 * np.sin(np.pi * u) + 0.2 * u)
+    rows = rw.take_rows(q, np.tile(REFERENCE.rest_translation[0], (count, 1))).span(slice(None), np.array([2, 2]))
+    added = rw.additive_rows(rows, np.zeros(len(ch.PARTS), dtype=bool), 1.0)
+    chest = added[:, 4 * REFERENCE.index["chest"]]
+    np.testing.assert_allclose(chest[[0, -1]], 0.0, atol=1e-6)
+    np.testing.assert_allclose(chest[count // 2], np.sin(0.2), atol=0.01)
+    assert not added[:, ch.WRIST].any()
+
+
+def test_units_without_motion_or_with_unknown_contacts_are_refused(library: UnitLibrary) -> None:
+    from game.animation.motion_bank import bake
+
+    seven = np.full(7, 0.5)
+    bare = MotionUnit("bare", "posture", seven, seven, seven)
+    with pytest.raises(BadInput, match="bare"):
+        bake(UnitLibrary([bare]), ("posture",))
+    span = (Variant(2, "joy", 0.0, 2.0, 0.0, 2.0),)
+    odd = MotionUnit("odd", "posture", seven, seven, seven, contacts={"left_hand": "moon"}, variants=span)
+    with pytest.raises(BadInput, match=r"moon.*|table"):
+        bake(UnitLibrary([odd], library.clips), ("posture",))

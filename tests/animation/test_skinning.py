@@ -1,0 +1,217 @@
+"""The rig: skinning against plain matrices, forearm twist, and spring bones that settle and stay outside."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from game.animation import Pose, Rig, SpringChain, SpringCollider
+from game.animation.crowd import crowd_matrices
+from game.animation.springbones import advance_springs
+from game.core import quaternion as quat
+from game.core.errors import BadInput
+from game.core.humanoid import REFERENCE
+
+DT = 1.0 / 30.0
+
+
+def pose_of(rotation: np.ndarray, root: np.ndarray | None = None) -> Pose:
+    n = len(rotation)
+    base = np.tile(REFERENCE.rest_translation[0], (n, 1)) if root is None else root
+    zero = np.zeros(n)
+    return Pose(rotation.astype(np.float32), base.astype(np.float32), np.zeros((n, 2)), zero, zero)
+
+
+def random_pose(n: int, seed: int = 0) -> Pose:
+    rng = np.random.default_rng(seed)
+    rotation = quat.exp(rng.normal(size=(n, len(REFERENCE), 3)) * 0.4)
+    return pose_of(rotation, REFERENCE.rest_translation[0] + rng.normal(size=(n, 3)) * 0.05)
+
+
+def rig_arrays() -> tuple[list[str], list[int], list[np.ndarray]]:
+    """REFERENCE with twist joints and a hanging chain of three pieces behind the head."""
+    names, parents = list(REFERENCE.names), list(REFERENCE.parents)
+    rest = list(REFERENCE.rest_translation)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        names.append(f"{side}ForearmTwist")
+        parents.append(REFERENCE.index[f"{side}LowerArm"])
+        rest.append(np.array([0.103 * sign, 0, 0]))
+    parent = REFERENCE.index["head"]
+    for piece in range(4):
+        names.append(f"tail{piece}")
+        parents.append(parent)
+        rest.append(np.array([0.0, 0.1, -0.2]) if piece == 0 else np.array([0.0, -0.08, -0.01]))
+        parent = len(names) - 1
+    return names, parents, rest
+
+
+def make_rig(*, springs: bool = False, radius: float = 0.05, colliders: bool = True) -> Rig:
+    names, parents, rest = rig_arrays()
+    first = names.index("tail0")
+    chain = SpringChain(
+        joints=tuple(range(first, first + 4)),
+        stiffness=(0.6,) * 3,
+        gravity_power=(0.3,) * 3,
+        gravity_dir=((0.0, -1.0, 0.0),) * 3,
+        drag=(0.35,) * 3,
+        hit_radius_m=(0.01,) * 3,
+        colliders=(0, 1) if colliders else (),
+    )
+    balls = (
+        SpringCollider(names.index("neck"), (0.0, 0.0, -0.15), radius),
+        SpringCollider(names.index("chest"), (-0.1, 0.1, -0.1), 0.06, (0.1, 0.1, -0.1)),
+    )
+    rng = np.random.default_rng(4)
+    bind = np.linalg.inv(
+        np.array(
+            [
+                np.block([[Rotation.random(random_state=rng).as_matrix(), rng.normal(size=(3, 1))], [0, 0, 0, 1]])
+                for _ in names
+            ]
+        )
+    )
+    return Rig.from_arrays(
+        names,
+        np.array(parents),
+        np.array(rest),
+        bind,
+        chains=(chain,) if springs else (),
+        colliders=balls if springs else (),
+    )
+
+
+def test_skin_matrices_agree_with_plain_kinematics() -> None:
+    rig, pose = make_rig(), random_pose(5)
+    skin = rig.skin_matrices(rig.joint_matrices(pose))
+    shift = np.tile(REFERENCE.rest_translation, (5, 1, 1))
+    shift[:, 0] = pose.root
+    position, rotation = REFERENCE.to_model(pose.rotation.astype(float), shift)
+    for joint in (0, 5, 20, 40):
+        model = np.tile(np.eye(4), (5, 1, 1))
+        model[:, :3, :3] = quat.to_matrix(rotation[:, joint])
+        model[:, :3, 3] = position[:, joint]
+        np.testing.assert_allclose(skin[:, joint], model @ rig.inverse_bind[joint], atol=1e-4)
+
+
+def test_a_crowd_is_skinned_like_one() -> None:
+    rig, pose = make_rig(), random_pose(150)
+    np.testing.assert_allclose(crowd_matrices(rig, pose), rig.skin_matrices(rig.joint_matrices(pose)), atol=2e-5)
+    _, skin = rig.advance(rig.start(150), pose, DT)
+    np.testing.assert_allclose(skin[:3], rig.advance(rig.start(3), random_pose(150), DT)[1][:3], atol=2e-5)
+
+
+def test_the_rest_pose_moves_nothing() -> None:
+    names, parents, rest = rig_arrays()
+    rig = Rig.from_arrays(names, np.array(parents), np.array(rest))
+    still = pose_of(np.tile(quat.IDENTITY, (1, len(REFERENCE), 1)))
+    np.testing.assert_allclose(
+        rig.skin_matrices(rig.joint_matrices(still))[0], np.tile(np.eye(4), (47, 1, 1)), atol=1e-5
+    )
+
+
+@pytest.mark.parametrize("angle", [-2.2, -0.5, 0.0, 1.0, 2.4])
+def test_the_forearm_takes_half_of_the_hands_twist(angle: float) -> None:
+    rig = make_rig()
+    q = np.tile(quat.IDENTITY, (1, len(REFERENCE), 1))
+    bend = Rotation.from_euler("z", 0.5)
+    q[0, REFERENCE.index["leftHand"]] = (bend * Rotation.from_euler("x", angle)).as_quat()
+    local = rig.local_rotations(pose_of(q))[0, rig.skeleton.index["leftForearmTwist"]]
+    np.testing.assert_allclose(Rotation.from_quat(local).as_rotvec(), [angle / 2, 0, 0], atol=1e-5)
+
+
+def test_a_turned_rest_pose_is_retargeted() -> None:
+    rest = np.array([[0.0, 0.8, 0.0], [0.0, 0.1, 0.0], [0.0, 0.1, 0.0]])
+    turn = Rotation.from_euler("y", 90, degrees=True).as_quat()
+    rig = Rig.from_arrays(
+        ["hips", "spine", "chest"],
+        np.array([-1, 0, 1]),
+        rest,
+        rest_rotation=np.array([quat.IDENTITY, turn, quat.IDENTITY]),
+    )
+    q = np.tile(quat.IDENTITY, (1, len(REFERENCE), 1))
+    q[0, REFERENCE.index["spine"]] = Rotation.from_euler("x", 30, degrees=True).as_quat()
+    model = rig.joint_matrices(pose_of(q))[0]
+    wanted = (Rotation.from_euler("x", 30, degrees=True) * Rotation.from_quat(turn)).as_matrix()
+    np.testing.assert_allclose(model[1, :3, :3], wanted, atol=1e-5)
+    assert model[0, 1, 3] == pytest.approx(0.8)
+
+
+def swing(
+    rig: Rig, seconds: float, dt: float = DT, n: int = 1, still_after: float = 0.6
+) -> tuple[np.ndarray, np.ndarray]:
+    """A head that is thrown about and then held. -> tails (F, S, 3), joint matrices (F, J, 4, 4) of character 0."""
+    state = rig.start(1)
+    tails, models = [], []
+    for k in range(round(seconds / dt)):
+        t = min(k * dt, still_after)
+        q = np.tile(quat.IDENTITY, (1, len(REFERENCE), 1))
+        q[:, REFERENCE.index["head"]] = quat.from_axis_angle(np.array([0.3, 1, 0]), np.array(0.9 * np.sin(9 * t)))
+        model = rig.joint_matrices(pose_of(q))
+        state = advance_springs(rig.springs, state, model, dt)
+        tails.append(state.tail[0])
+        models.append(model[0])
+    return np.array(tails), np.array(models)
+
+
+def test_springs_settle_and_keep_their_lengths() -> None:
+    rig = make_rig(springs=True, colliders=False)
+    tails, models = swing(rig, 5.0)
+    assert np.abs(np.diff(tails[:20], axis=0)).max() > 0.005
+    assert np.abs(np.diff(tails[-5:], axis=0)).max() < 2e-4
+    joints = [rig.skeleton.index[f"tail{i}"] for i in range(4)]
+    gaps = np.linalg.norm(np.diff(models[:, joints][..., :3, 3], axis=1), axis=-1)
+    np.testing.assert_allclose(gaps, np.hypot(0.08, 0.01), atol=1e-4)
+    np.testing.assert_allclose(models[-1, joints[1:]][:, :3, 3], tails[-1], atol=1e-5)
+
+
+def test_springs_never_enter_their_colliders() -> None:
+    rig = make_rig(springs=True)
+    tails, models = swing(rig, 3.0, still_after=2.5)
+    ball = models[:, rig.skeleton.index["neck"]] @ np.array([0.0, 0.0, -0.15, 1.0])
+    distance = np.linalg.norm(tails - ball[:, None, :3], axis=-1)
+    assert distance.min() > 0.05 + 0.01 - 2e-3
+    chest = models[:, rig.skeleton.index["chest"]]
+    a, b = chest @ np.array([-0.1, 0.1, -0.1, 1.0]), chest @ np.array([0.1, 0.1, -0.1, 1.0])
+    way = (b - a)[:, None, :3]
+    along = np.clip(((tails - a[:, None, :3]) * way).sum(-1, keepdims=True) / (way**2).sum(-1, keepdims=True), 0, 1)
+    assert np.linalg.norm(tails - a[:, None, :3] - along * way, axis=-1).min() > 0.07 - 2e-3
+
+
+def test_springs_hang_alike_at_thirty_and_sixty_ticks_a_second() -> None:
+    rig = make_rig(springs=True, colliders=False)
+    slow, _ = swing(rig, 3.0)
+    fast, _ = swing(rig, 3.0, dt=DT / 2)
+    np.testing.assert_allclose(slow[-1], fast[-1], atol=3e-3)
+    assert np.abs(slow - fast[::2][: len(slow)]).max() < 0.03
+
+
+def test_at_sixty_ticks_a_step_is_vrms_own() -> None:
+    rig = make_rig(springs=True, colliders=False)
+    tails, models = swing(rig, 0.5, dt=1 / 60)
+    head = rig.skeleton.index["tail0"]
+    above = models[:, rig.skeleton.index["head"]]
+    origin = models[:, head, :3, 3]
+    axis = rig.skeleton.rest_translation[head + 1]
+    length = np.linalg.norm(axis)
+    k = 12
+    rest = above[k, :3, :3] @ (axis / length)
+    wanted = (
+        tails[k - 1, 0]
+        + (tails[k - 1, 0] - tails[k - 2, 0]) * (1 - 0.35)
+        + rest * 0.6 / 60
+        + np.array([0, -1, 0]) * 0.3 / 60
+    )
+    wanted = origin[k] + (wanted - origin[k]) / np.linalg.norm(wanted - origin[k]) * length
+    np.testing.assert_allclose(tails[k, 0], wanted, atol=1e-5)
+
+
+def test_bad_chains_and_rigs_are_refused() -> None:
+    names, parents, rest = rig_arrays()
+    chain = SpringChain((0, 9), (1.0,), (0.0,), ((0, -1, 0),), (0.4,), (0.0,))
+    with pytest.raises(BadInput, match="child of joint 0"):
+        Rig.from_arrays(names, np.array(parents), np.array(rest), chains=[chain])
+    with pytest.raises(BadInput, match="hips"):
+        Rig.from_arrays(["a"], np.array([-1]), np.zeros((1, 3)))
+    with pytest.raises(BadInput, match="inverse bind"):
+        Rig.from_arrays(names, np.array(parents), np.array(rest), np.zeros((3, 4, 4)))
