@@ -28,9 +28,9 @@ _MIRROR = np.array([[[1.0, 1.0]], [[-1.0, 1.0]]])
 _CLOSING = 0.5  # below this opening the lids approach the line on which they meet
 
 _SOFT = 0.12  # feather of small discs, as a share of their radius
-_IRIS = polar((0.0, 0.3, 0.55, 0.75, 0.87, 0.93, 1.0, 1.05), 32)
-_PUPIL = polar((0.0, 0.9, 1.0, 1.0 + _SOFT), 24)
-_SPOT = polar((0.0, 0.92, 1.0, 1.0 + _SOFT), 18)
+_IRIS = polar((0.0, 0.35, 0.62, 0.85, 0.93, 1.0, 1.05), 28)
+_PUPIL = polar((0.0, 1.0, 1.0 + _SOFT), 20)
+_SPOT = polar((0.0, 1.0, 1.0 + _SOFT), 16)
 _RAYS = 0.26 + 0.74 * np.abs(np.cos(2.0 * np.linspace(0.0, 2.0 * np.pi, 33))) ** 5  # a star of four points
 _STAR = polar((0.0, 0.9, 1.1), 32) * _RAYS[None, :, None]
 _STAR_EDGE = np.array([1.0, 1.0, 0.0])[None, :, None, None]
@@ -153,15 +153,19 @@ def _iris_ramp(style: FaceStyle) -> Floats:
 
 
 def _iris_colour(relative: Floats, style: FaceStyle) -> Floats:
-    """Opaque colour (..., 4) at places (..., 2) relative to the iris (±1 at its rim): dark top, glow below, rim."""
+    """Colour (..., 4) at places (..., 2) relative to the iris (±1 at its rim): dark top, glow below, rim, soft edge."""
     x, y = relative[..., 0], relative[..., 1]
     ramp = _iris_ramp(style)
     colour = np.ones((*x.shape, 4))
     colour[..., :3] = ramp[np.minimum(np.maximum((y + 1.0) * 31.5, 0.0), 63.0).astype(np.intp)]
-    glow = np.maximum(0.85 - np.hypot(x, (y + 0.62) * 1.25) * (0.85 / 0.95), 0.0)
+    across = x * x
+    low = (y + 0.62) * 1.25
+    glow = np.maximum(0.85 - np.sqrt(across + low * low) * (0.85 / 0.95), 0.0)
     colour += (ink(style.iris_glow) - colour) * glow[..., None]
-    rim = np.minimum(np.maximum((np.hypot(x, y) - 0.86) / 0.07, 0.0), 1.0)
+    radius = np.sqrt(across + y * y)
+    rim = np.minimum(np.maximum((radius - 0.86) / 0.07, 0.0), 1.0)
     colour += (ink(style.iris_rim) - colour) * rim[..., None]
+    colour *= np.minimum(np.maximum((1.05 - radius) * 20.0, 0.0), 1.0)[..., None]
     return colour
 
 
@@ -204,8 +208,7 @@ def eyeballs(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> N
 
         # Colours and soft edges follow from where a point came to lie, not from where it started.
         relative = ((inside[:, :n] - centre) / radius).reshape(2, *_IRIS.shape)
-        edge = np.minimum(np.maximum((1.05 - np.hypot(relative[..., 0], relative[..., 1])) * 20.0, 0.0), 1.0)
-        sheet.grid(placed[:, :n].reshape(relative.shape), _iris_colour(relative, style) * edge[..., None] * shown)
+        sheet.grid(placed[:, :n].reshape(relative.shape), _iris_colour(relative, style) * shown)
         relative = ((inside[:, n:m] - pupil_centre) / pupil_radius).reshape(2, *_PUPIL.shape)
         sheet.grid(placed[:, n:m].reshape(relative.shape), ink(style.pupil) * (_edge(relative) * shown))
         shade = np.minimum(np.maximum(lid.upper - 9.5, lid.lower), lid.upper)
@@ -235,8 +238,9 @@ def eyeballs(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> N
 
 def _edge(relative: Floats) -> Floats:
     """Alpha (..., 1) of a soft-edged disc at places (..., 2) in units of its radius."""
-    radius = np.hypot(relative[..., 0], relative[..., 1])
-    return np.asarray(np.minimum(np.maximum((1.0 + _SOFT - radius) / _SOFT, 0.0), 1.0)[..., None])
+    x, y = relative[..., 0], relative[..., 1]
+    outer = (1.0 + _SOFT) ** 2  # a ramp over the square of the radius looks the same and needs no root
+    return np.asarray(np.minimum(np.maximum((outer - x * x - y * y) / (outer - 1.0), 0.0), 1.0)[..., None])
 
 
 def lashes(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> None:

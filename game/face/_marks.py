@@ -128,7 +128,7 @@ def drops(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
         colour[:] = ink("#C4EEFF") * fade[:, None]
         body = np.empty((4, 2, 12, 2))
         body[..., 1] = y
-        paths = ((34.0, 40.0, 7.5), (84.0, 92.0, 9.0))
+        paths = ((45.0, 58.0, 7.5), (86.0, 97.0, 9.0))
         for i, (start, end, wide) in enumerate(paths):
             x = start + (end - start) * _UNIT12
             half = wide * (0.55 + 0.45 * _UNIT12) * (0.4 + 0.6 * stream)
