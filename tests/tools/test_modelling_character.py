@@ -15,9 +15,9 @@ from game.formats import GltfFile, Vrm, read_gltf, read_vrm
 from game.formats.vrm_model import REQUIRED_BONES
 from game.tools.modelling.character import Character
 from game.tools.modelling.export import LEVELS
+from game.tools.modelling.face_atlas import EXPRESSIONS
 from game.tools.modelling.parts import Detail
 from game.tools.modelling.spec import load_character
-from game.tools.modelling.vrm import EXPRESSIONS
 
 FOLDER = ASSETS / "characters"
 NAMES = ["mira"]
@@ -77,7 +77,9 @@ def test_it_is_a_vrm_with_the_reference_skeleton_in_t_pose(vrm):
 def test_meta_expressions_and_look_at_are_declared(vrm):
     assert vrm.authors
     assert vrm.meta["licenseUrl"] == "https://vrm.dev/licenses/1.0/"
-    assert set(EXPRESSIONS) <= set(vrm.expressions)
+    assert set(EXPRESSIONS) == set(vrm.expressions)
+    assert all(vrm.expressions[name].material_binds == 1 for name in EXPRESSIONS)
+    assert [image.mime_type for image in vrm.gltf.images] == ["image/png"]
     assert vrm.look_at is not None
 
 

@@ -21,7 +21,7 @@ from game.tools.modelling.hair import Hair
 from game.tools.modelling.mesh import Mesh, joined
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.spec import load_character
-from game.tools.modelling.vrm import add_skeleton, humanoid_extension, spring_extension
+from game.tools.modelling.vrm import add_face_pictures, add_skeleton, humanoid_extension, spring_extension
 
 __all__ = ["LEVELS", "build_character"]
 
@@ -31,7 +31,7 @@ _FINEST, _SHADOW = max(LEVELS), min(LEVELS)
 
 _FACE_SQUARE_M = 0.340
 """Edge of the square the face is painted in (ART.md, "Face")."""
-_BLANK_UV = (0.5, 0.02)
+_BLANK_UV = (0.5, 0.96)
 """A place on the face texture that is never painted."""
 
 
@@ -45,11 +45,18 @@ def build_character(yaml_path: Path, out_dir: Path) -> list[Path]:
     main, others = Gltf(), Gltf()
     _write_levels(main, character, [_FINEST], toon=True)
     _write_levels(others, character, [level for level in LEVELS if level != _FINEST], toon=False)
+    face = next(i for i, material in enumerate(main.materials) if material["extras"]["class"] == "face")
+    add_face_pictures(main, main.materials[face], main.materials[face]["extras"]["lit_srgb"])
     main.root["extensions"] = {
-        "VRMC_vrm": humanoid_extension(spec, character.rig),
+        "VRMC_vrm": humanoid_extension(spec, character.rig, face),
         "VRMC_springBone": spring_extension(main, character.rig),
     }
-    main.root["extensionsUsed"] = ["VRMC_vrm", "VRMC_springBone", "VRMC_materials_mtoon"]
+    main.root["extensionsUsed"] = [
+        "VRMC_vrm",
+        "VRMC_springBone",
+        "VRMC_materials_mtoon",
+        "KHR_texture_transform",
+    ]
     files = [out_dir / f"{spec.id}.vrm", out_dir / f"{spec.id}.lod.glb"]
     for gltf, file in zip((main, others), files, strict=True):
         gltf.save(file)

@@ -64,6 +64,16 @@ class Gltf:
         kind = np.uint16 if vertex_count < 65535 else np.uint32
         return self.accessor(triangle.astype(kind).ravel(), target=_INDICES)
 
+    def picture(self, png: bytes, name: str) -> int:
+        """Append an embedded PNG with a clamped linear sampler; -> its texture index."""
+        self._views.append({"buffer": 0, "byteOffset": len(self._blob), "byteLength": len(png)})
+        self._blob += png + b"\0" * (-len(png) % 4)
+        images, textures = self.root.setdefault("images", []), self.root.setdefault("textures", [])
+        self.root["samplers"] = [{"magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071}]
+        images.append({"name": name, "mimeType": "image/png", "bufferView": len(self._views) - 1})
+        textures.append({"source": len(images) - 1, "sampler": 0})
+        return len(textures) - 1
+
     def node(self, **content: Any) -> int:
         self.nodes.append(content)
         return len(self.nodes) - 1

@@ -7,21 +7,17 @@ from typing import Any
 import numpy as np
 
 from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE
-from game.tools.modelling.gltf import Gltf
+from game.tools.modelling.face_atlas import COLUMNS, EXPRESSIONS, ROWS, cell_of, paint_atlas
+from game.tools.modelling.gltf import Gltf, linear_rgb
 from game.tools.modelling.rig import Rig
 from game.tools.modelling.spec import CharacterSpec
 
-__all__ = ["EXPRESSIONS", "add_skeleton", "humanoid_extension", "spring_extension"]
+__all__ = ["add_face_pictures", "add_skeleton", "humanoid_extension", "spring_extension"]
 
 LICENSE_URL = "https://vrm.dev/licenses/1.0/"
 
-EXPRESSIONS = (
-    *("happy", "angry", "sad", "relaxed", "surprised", "neutral"),
-    *("aa", "ih", "ou", "ee", "oh"),
-    *("blink", "blinkLeft", "blinkRight"),
-    *("lookUp", "lookDown", "lookLeft", "lookRight"),
-)
-"""All presets of VRM 1.0."""
+_WHOLE_FACES = ("happy", "angry", "sad", "relaxed", "surprised")
+"""Emotions are pictures of eyes and mouth together: nothing else may choose a cell meanwhile."""
 
 # joint, offset from it, radius: what hair, bow and scarf must not sink into
 _COLLIDERS = (
@@ -54,9 +50,39 @@ def add_skeleton(gltf: Gltf, rig: Rig) -> int:
     return 0
 
 
-def humanoid_extension(spec: CharacterSpec, rig: Rig) -> dict[str, Any]:
-    """VRMC_vrm. The face is vector art drawn at run time: expressions are declared for other programs by name."""
-    expression = {"isBinary": False, "overrideBlink": "none", "overrideLookAt": "none", "overrideMouth": "none"}
+def add_face_pictures(gltf: Gltf, material: dict[str, Any], skin: str) -> None:
+    """Give the face's material the atlas of expressions, at the neutral cell, on the lit and on the shaded side.
+
+    The game ignores it and draws the vector face; other programs have no other face to show.
+    """
+    texture = gltf.picture(paint_atlas(skin), "expressions")
+    transform = {"offset": list(cell_of("neutral")), "scale": [1 / COLUMNS, 1 / ROWS]}
+    use = {"index": texture, "extensions": {"KHR_texture_transform": transform}}
+    material["pbrMetallicRoughness"]["baseColorTexture"] = use
+    material["pbrMetallicRoughness"]["baseColorFactor"] = [1.0, 1.0, 1.0, 1.0]
+    toon = material["extensions"]["VRMC_materials_mtoon"]
+    toon["shadeMultiplyTexture"] = use
+    # The picture already holds the lit skin colour: the factor is what remains from there to the shade.
+    toon["shadeColorFactor"] = [
+        round(min(shade / lit, 1.0), 6) for shade, lit in zip(toon["shadeColorFactor"], linear_rgb(skin), strict=True)
+    ]
+
+
+def _expression(name: str, face_material: int) -> dict[str, Any]:
+    """A preset as a choice of the atlas' cell; binary, since half an offset would show half of two faces."""
+    override = "block" if name in _WHOLE_FACES else "none"
+    bind = {"material": face_material, "scale": [1 / COLUMNS, 1 / ROWS], "offset": list(cell_of(name))}
+    return {
+        "isBinary": True,
+        "textureTransformBinds": [bind],
+        "overrideBlink": override,
+        "overrideLookAt": override,
+        "overrideMouth": override,
+    }
+
+
+def humanoid_extension(spec: CharacterSpec, rig: Rig, face_material: int) -> dict[str, Any]:
+    """VRMC_vrm: meta, humanoid bones, expressions, look-at. face_material: index of the face's material."""
     look_range = {"inputMaxValue": 90.0, "outputScale": 1.0}
     return {
         "specVersion": "1.0",
@@ -85,7 +111,7 @@ def humanoid_extension(spec: CharacterSpec, rig: Rig) -> dict[str, Any]:
             "rangeMapVerticalDown": look_range,
             "rangeMapVerticalUp": look_range,
         },
-        "expressions": {"preset": {name: dict(expression) for name in EXPRESSIONS}},
+        "expressions": {"preset": {name: _expression(name, face_material) for name in EXPRESSIONS}},
     }
 
 
