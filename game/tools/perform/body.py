@@ -87,26 +87,39 @@ def torso(x: Mapping[str, Floats]) -> tuple[Floats, dict[str, Floats]]:
     return np.stack([x["sideways"], x["up"], x["forward"]], -1), rotations
 
 
-def _flex(root: Floats, end: Floats, upper_m: float, lower_m: float, pole: Floats) -> tuple[Floats, Floats]:
-    """Directions of thigh and shin (F, 3) from hip (F, 3) to ankle (F, 3), knee toward the pole."""
+def _flex(root: Floats, end: Floats, upper_m: float, lower_m: float, pole: Floats) -> tuple[Floats, Floats, Floats]:
+    """Directions of thigh and shin (F, 3) from hip (F, 3) to ankle (F, 3), knee toward the pole, its axis."""
     way = end - root
-    distance = np.clip(np.linalg.norm(way, axis=-1, keepdims=True), 1e-6, 0.9995 * (upper_m + lower_m))
-    along = way / np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-6)
+    length = np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), 1e-6)
+    distance = np.minimum(length, 0.9995 * (upper_m + lower_m))
+    along = way / length
     out = pole - (pole * along).sum(-1, keepdims=True) * along
     out = out / np.linalg.norm(out, axis=-1, keepdims=True)
     cosine = np.clip((upper_m**2 + distance**2 - lower_m**2) / (2 * upper_m * distance), -1.0, 1.0)
     knee = root + along * (upper_m * cosine) + out * (upper_m * np.sqrt(1.0 - cosine**2))
     thigh = (knee - root) / upper_m
     shin = root + along * distance - knee
-    return thigh, shin / np.linalg.norm(shin, axis=-1, keepdims=True)
+    return thigh, shin / np.linalg.norm(shin, axis=-1, keepdims=True), np.cross(out, along)
 
 
-def _frame(down: Floats, front: Floats) -> Floats:
-    """Quaternion whose -Y is ``down`` and whose +Z is nearest to ``front``; both (F, 3)."""
-    y = -down
-    z = front - (front * y).sum(-1, keepdims=True) * y
-    z = z / np.linalg.norm(z, axis=-1, keepdims=True)
-    return quat.from_matrix(np.stack([np.cross(y, z), y, z], -1))
+def _bone(down: Floats, axis: Floats) -> Floats:
+    """Quaternion whose -Y is ``down`` and whose X is the knee's axis; both (F, 3)."""
+    x = axis - (axis * down).sum(-1, keepdims=True) * down
+    x = x / np.linalg.norm(x, axis=-1, keepdims=True)
+    return quat.from_matrix(np.stack([x, -down, np.cross(x, -down)], -1))
+
+
+def _soft_reach(distance: Floats, full_m: float) -> Floats:
+    """A leg approaches its full length without ever locking: linear to 96.5 %, then flat toward 99.5 %."""
+    start, end = 0.965 * full_m, 0.995 * full_m
+    beyond = np.maximum(distance - start, 0.0)
+    return np.asarray(np.minimum(distance, start) + (end - start) * (1.0 - np.exp(-beyond / (end - start))))
+
+
+def _ankle(toes: Floats, to_ankle: Floats, rise_rad: Floats) -> tuple[Floats, Floats]:
+    """Ankle (F, 3) and rotation (F, 4) of a foot whose heel has risen by an angle (F,) about its toes."""
+    foot = quat.from_axis_angle((1.0, 0.0, 0.0), rise_rad)
+    return toes + quat.rotate(foot, np.broadcast_to(to_ankle, (len(rise_rad), 3))), foot
 
 
 def legs(shift: Floats, hips_rotation: Floats) -> tuple[Floats, dict[str, Floats]]:
@@ -117,54 +130,48 @@ def legs(shift: Floats, hips_rotation: Floats) -> tuple[Floats, dict[str, Floats
     """
     at = {name: REFERENCE.rest_model[i, :3, 3] for name, i in REFERENCE.index.items()}
     frames = len(shift)
-    rotations: dict[str, Floats] = {}
-    shift = shift.copy()
-    # How high may the pelvis be with flat feet? A stretched leg (99.5 %) of each side gives an upper bound.
-    flat = np.full(frames, np.inf)
+    # Tiptoe ends at 28 mm, a squat at -310 mm; what is asked beyond is flattened, not cut.
+    up = shift[:, 1]
+    up = np.where(up > 0.012, 0.012 + 0.016 * np.tanh((up - 0.012) / 0.016), up)
+    up = np.where(up < -0.25, -0.25 + 0.06 * np.tanh((up + 0.25) / 0.06), up)
+    sizes = {}
+    ceiling = np.full(frames, np.inf)
     for side in ("left", "right"):
-        joint = quat.rotate(hips_rotation, np.broadcast_to(at[f"{side}UpperLeg"] - at["hips"], (frames, 3)))
         thigh_m = float(np.linalg.norm(at[f"{side}LowerLeg"] - at[f"{side}UpperLeg"]))
         shin_m = float(np.linalg.norm(at[f"{side}Foot"] - at[f"{side}LowerLeg"]))
+        sizes[side] = (thigh_m, shin_m)
+        joint = quat.rotate(hips_rotation, np.broadcast_to(at[f"{side}UpperLeg"] - at["hips"], (frames, 3)))
         level = at["hips"] + joint + shift * (1.0, 0.0, 1.0) - at[f"{side}Foot"]
-        reach = (0.995 * (thigh_m + shin_m)) ** 2 - level[:, 0] ** 2 - level[:, 2] ** 2
-        flat = np.minimum(flat, np.sqrt(np.maximum(reach, 0.01)) - level[:, 1])
-    shift[:, 1] = np.minimum(shift[:, 1], flat + np.maximum(shift[:, 1], 0.0))
-    front = quat.rotate(hips_rotation, np.broadcast_to((0.0, 0.0, 1.0), (frames, 3)))
+        reach = (0.99 * (thigh_m + shin_m)) ** 2 - level[:, 0] ** 2 - level[:, 2] ** 2
+        ceiling = np.minimum(ceiling, np.sqrt(np.maximum(reach, 0.01)) - level[:, 1])
+    # A pelvis that moved away over flat feet is lower; heels add only what a rise was asked for (softly above 0).
+    ceiling = ceiling + 0.006 * np.logaddexp(0.0, up / 0.006)
+    width = 0.006
+    up = up - width * np.logaddexp(0.0, (up - ceiling) / width)
+    shift = np.stack([shift[:, 0], up, shift[:, 2]], -1)
     # Knees point between where the pelvis and where the feet point.
-    front = front + (0.0, 0.0, 1.0)
+    front = quat.rotate(hips_rotation, np.broadcast_to((0.0, 0.0, 1.0), (frames, 3))) + (0.0, 0.0, 1.0)
+    rotations: dict[str, Floats] = {}
     for side in ("left", "right"):
-        hip = (
-            at["hips"]
-            + shift
-            + quat.rotate(hips_rotation, np.broadcast_to(at[f"{side}UpperLeg"] - at["hips"], (frames, 3)))
-        )
-        toes, ankle_rest = at[f"{side}Toes"], at[f"{side}Foot"]
-        thigh_m = float(np.linalg.norm(at[f"{side}LowerLeg"] - at[f"{side}UpperLeg"]))
-        shin_m = float(np.linalg.norm(ankle_rest - at[f"{side}LowerLeg"]))
-        limit = 0.996 * (thigh_m + shin_m)
-        # The smallest heel rise that brings the ankle within reach, by bisection over all frames at once.
-        low, high = np.zeros(frames), np.full(frames, np.radians(55.0))
-        for _ in range(14):
+        thigh_m, shin_m = sizes[side]
+        to_hip = np.broadcast_to(at[f"{side}UpperLeg"] - at["hips"], (frames, 3))
+        hip = at["hips"] + shift + quat.rotate(hips_rotation, to_hip)
+        toes, to_ankle = at[f"{side}Toes"], at[f"{side}Foot"] - at[f"{side}Toes"]
+        allowed = _soft_reach(np.linalg.norm(at[f"{side}Foot"] - hip, axis=-1), thigh_m + shin_m)
+        # The smallest heel rise that brings the ankle that near, by bisection over all frames at once.
+        low, high = np.zeros(frames), np.full(frames, np.radians(60.0))
+        for _ in range(22):
             middle = 0.5 * (low + high)
-            ankle = toes + quat.rotate(
-                quat.from_axis_angle((1.0, 0.0, 0.0), middle), np.broadcast_to(ankle_rest - toes, (frames, 3))
-            )
-            far = np.linalg.norm(ankle - hip, axis=-1) > limit
+            far = np.linalg.norm(_ankle(toes, to_ankle, middle)[0] - hip, axis=-1) > allowed
             low, high = np.where(far, middle, low), np.where(far, high, middle)
-        rise = np.where(np.linalg.norm(ankle_rest - hip, axis=-1) > limit, high, 0.0)
-        foot = quat.from_axis_angle((1.0, 0.0, 0.0), rise)
-        ankle = toes + quat.rotate(foot, np.broadcast_to(ankle_rest - toes, (frames, 3)))
-        thigh, shin = _flex(hip, ankle, thigh_m, shin_m, front)
-        knee_front = front / np.linalg.norm(front, axis=-1, keepdims=True)
+        ankle, foot = _ankle(toes, to_ankle, high)
+        thigh, shin, axis = _flex(hip, ankle, thigh_m, shin_m, front)
         # Rest legs are not quite vertical: turn from the rest directions, not from straight down.
-        rest_thigh = (at[f"{side}LowerLeg"] - at[f"{side}UpperLeg"]) / thigh_m
-        rest_shin = (ankle_rest - at[f"{side}LowerLeg"]) / shin_m
-        upper = quat.multiply(
-            _frame(thigh, knee_front), quat.conjugate(_frame(rest_thigh[None], np.array([[0, 0, 1.0]])))
-        )
-        lower = quat.multiply(
-            _frame(shin, knee_front), quat.conjugate(_frame(rest_shin[None], np.array([[0, 0, 1.0]])))
-        )
+        sideways = np.array([[1.0, 0.0, 0.0]])
+        rest_thigh = _bone((at[f"{side}LowerLeg"] - at[f"{side}UpperLeg"])[None] / thigh_m, sideways)
+        rest_shin = _bone((at[f"{side}Foot"] - at[f"{side}LowerLeg"])[None] / shin_m, sideways)
+        upper = quat.multiply(_bone(thigh, axis), quat.conjugate(rest_thigh))
+        lower = quat.multiply(_bone(shin, axis), quat.conjugate(rest_shin))
         rotations[f"{side}UpperLeg"] = quat.multiply(quat.conjugate(hips_rotation), upper)
         rotations[f"{side}LowerLeg"] = quat.multiply(quat.conjugate(upper), lower)
         rotations[f"{side}Foot"] = quat.multiply(quat.conjugate(lower), foot)

@@ -108,48 +108,55 @@ def body_depth(points: Floats, radii: Floats, position: Floats, rotation: Floats
     return np.asarray(np.maximum(inside.max(-1), 0.0))
 
 
+def _table(points: Floats, radii: Floats) -> tuple[Floats, Floats]:
+    """Depth (F, K) of spheres below the table's top and behind its back edge; the table reaches the floor."""
+    below = TABLE_TOP_M + radii - points[..., 1]
+    beyond = points[..., 2] + radii - TABLE_BACK_Z_M
+    inside = (below > 0.0) & (beyond > 0.0) & (points[..., 2] < TABLE_FRONT_Z_M)
+    return np.where(inside, below, 0.0), np.where(inside, beyond, 0.0)
+
+
 def table_depth(points: Floats, radii: Floats) -> Floats:
-    """How deep (F, K) each point's sphere lies inside the table top, metres, 0 outside. Elbows may hang before it."""
-    y, z = points[..., 1], points[..., 2]
-    over = (z > TABLE_BACK_Z_M) & (z < TABLE_FRONT_Z_M)
-    # A hand deeper than 12 cm is under the table, not in it.
-    depth = TABLE_TOP_M + radii - y
-    return np.asarray(np.where(over & (depth < 0.12), np.maximum(depth, 0.0), 0.0))
+    """How deep (F, K) each point's sphere lies inside the table, metres, 0 outside: the nearer way out counts."""
+    return np.asarray(np.minimum(*_table(points, radii)))
 
 
 def body_push(points: Floats, radii: Floats, position: Floats, rotation: Floats) -> Floats:
-    """The one shift (F, 3) that a wrist needs so that its hand and forearm leave trunk, head and table."""
+    """The shift (F, 3) that a wrist needs so that its hand and forearm leave trunk, head and table.
+
+    The deepest point decides; a point of the forearm moves less than the wrist does, so its push is larger.
+    """
     distance, out = _distances(points, position, rotation)
     slack = np.full(len(radii), 0.004)
-    slack[HAND_POINTS:] = 0.016
-    inside = np.where(_counts(len(radii)), (radii - slack)[:, None] - distance, 0.0)
+    slack[HAND_POINTS:] = 0.012
+    gain = np.ones(len(radii))
+    gain[HAND_POINTS:] = (1.3, 1.6, 1.0)
+    inside = np.where(_counts(len(radii)), ((radii - slack)[:, None] - distance) * gain[:, None], 0.0)
     frames = np.arange(len(points))
     flat = inside.reshape(len(points), -1)
     deepest = flat.argmax(1)
     push = out.reshape(len(points), -1, 3)[frames, deepest] * np.maximum(flat[frames, deepest], 0.0)[:, None]
-    on_table = table_depth(points[:, :-1], radii[:-1] - 0.001).max(1)
-    push[:, 1] += np.maximum(on_table - np.maximum(push[:, 1], 0.0), 0.0)
+    below, beyond = _table(points[:, :-1] + push[:, None], radii[:-1] - 0.001)
+    nearest = np.minimum(below, beyond)
+    worst = nearest.argmax(1)
+    up = below[frames, worst] <= beyond[frames, worst]
+    push[:, 1] += np.where(up, nearest[frames, worst], 0.0)
+    push[:, 2] -= np.where(up, 0.0, nearest[frames, worst])
     return np.asarray(push)
 
 
-def arms_apart(inner: Floats, outer: Floats, radii: Floats, forward: Floats) -> Floats:
-    """Shift (F, 3) for the outer arm's wrist so that crossed arms and joined hands lie on each other, not in.
+def arms_apart(mine: Floats, other: Floats, radii: Floats, direction: Floats) -> Floats:
+    """How far (F,) one arm must go along a unit direction (F, 3) to lie on the other arm, not in it; metres, >= 0.
 
-    inner, outer: (F, 11, 3) points of the two arms; forward: (F, 3) away from the chest, which breaks ties.
+    mine, other: (F, 11, 3) points of the two arms. Flesh gives a little: 86 % of the radii.
     """
-    way = outer[:, :, None] - inner[:, None]
-    length = np.linalg.norm(way, axis=-1)
-    inside = 0.86 * (radii[:, None] + radii[None, :]) - length
-    flat = inside.reshape(len(outer), -1)
-    frames = np.arange(len(outer))
-    deepest = flat.argmax(1)
-    direction = (
-        way.reshape(len(outer), -1, 3)[frames, deepest]
-        / np.maximum(length.reshape(len(outer), -1)[frames, deepest], 1e-4)[:, None]
-    )
-    direction = direction + 0.8 * forward
-    direction = direction / np.maximum(np.linalg.norm(direction, axis=-1, keepdims=True), 1e-6)
-    return np.asarray(direction * np.maximum(flat[frames, deepest], 0.0)[:, None])
+    way = mine[:, :, None] - other[:, None]
+    along = np.einsum("fijc,fc->fij", way, direction)
+    touch = 0.86 * (radii[:, None] + radii[None, :])
+    inside = touch**2 - (way**2).sum(-1)
+    # |way + t direction| = touch, solved for the t that leads out ahead.
+    t = np.where(inside > 0.0, -along + np.sqrt(np.maximum(along**2 + inside, 0.0)), 0.0)
+    return np.asarray(t.reshape(len(mine), -1).max(1))
 
 
 def spread_pushes(push: Floats, half: int = 4) -> Floats:

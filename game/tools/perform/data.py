@@ -19,6 +19,7 @@ from game.tools.perform.timing import Ease
 
 __all__ = [
     "MOTION",
+    "Attention",
     "Behaviour",
     "Breath",
     "Cue",
@@ -49,6 +50,16 @@ class Breath:
 
 
 @dataclass(frozen=True)
+class Attention:
+    """The head takes a new bearing every so many seconds, within some degrees, in ``move_s``."""
+
+    every_s: tuple[float, float]
+    yaw_deg: float
+    pitch_deg: float
+    move_s: float
+
+
+@dataclass(frozen=True)
 class Effort:
     """How an emotion moves; see assets/motion/effort.yaml for every field."""
 
@@ -65,6 +76,7 @@ class Effort:
     sway: float
     sway_band_hz: tuple[float, float]
     tremor: float
+    attention: Attention
     carriage: Mapping[str, float]
 
 
@@ -92,7 +104,10 @@ class Behaviour:
 
 @dataclass(frozen=True)
 class Cue:
-    """One line of a score: what to do when. Times in seconds, ``at`` from the take's start."""
+    """One line of a score: what to do when. Times in seconds, ``at`` from the take's start.
+
+    hands: for a posture, where main and other hand belong instead of where the posture puts them.
+    """
 
     at_s: float
     do: str
@@ -102,6 +117,7 @@ class Cue:
     words: str | None
     channels: Mapping[str, float]
     tempo: float
+    hands: tuple[str, str] | None
 
 
 @dataclass(frozen=True)
@@ -132,6 +148,13 @@ def _numbers(node: Node, count: int) -> tuple[float, ...]:
     return tuple(item.as_float() for item in items)
 
 
+def _pair(node: Node) -> tuple[str, str]:
+    names = [item.as_str() for item in node.as_list()]
+    if len(names) != 2:
+        raise BadInput(where=node.where, expected="two hand targets: main and other", seen=len(names))
+    return names[0], names[1]
+
+
 def _channels(node: Node | None) -> dict[str, float]:
     if node is None:
         return {}
@@ -156,6 +179,7 @@ def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
         "breath",
         "sway",
         "tremor",
+        "attention",
         "carriage",
     )
     sharp, anticipation = node["sharp"].as_float(0, 2), node["anticipation"].as_float(0, 1)
@@ -163,6 +187,8 @@ def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
     frequency, damping, response = _numbers(node["spring"], 3)
     hand_frequency, hand_damping = _numbers(node["hand"], 2)
     low, high = _numbers(sway["band"], 2)
+    notice = node["attention"].only("every", "yaw", "pitch", "move")
+    first, last = _numbers(notice["every"], 2)
     return Effort(
         tempo=node["tempo"].as_float(0.2, 5),
         ease=Ease(node["skew"].as_float(0.2, 5), sharp, anticipation),
@@ -177,6 +203,12 @@ def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
         sway=sway["amplitude"].as_float(0, 5),
         sway_band_hz=(low, high),
         tremor=node["tremor"].as_float(0, 3),
+        attention=Attention(
+            (first, last),
+            notice["yaw"].as_float(0, 60),
+            notice["pitch"].as_float(0, 60),
+            notice["move"].as_float(0.05, 5),
+        ),
         carriage=_channels(node["carriage"]),
     )
 
@@ -224,9 +256,10 @@ def load_score(emotion: str, folder: Path = MOTION / "scores") -> Score:
         length = line["length_s"].as_float(1, 120)
         lines.append(Line(line["line"].as_str(), start, length))
         for cue in line["do"].as_list():
-            cue.only("at", "do", "hold", "size", "side", "words", "with", "tempo")
+            cue.only("at", "do", "hold", "size", "side", "words", "with", "tempo", "hands")
             side = cue.get("side")
             words = cue.get("words")
+            hands = cue.get("hands")
             hold, size, tempo = cue.get("hold"), cue.get("size"), cue.get("tempo")
             cues.append(
                 Cue(
@@ -238,6 +271,7 @@ def load_score(emotion: str, folder: Path = MOTION / "scores") -> Score:
                     words=None if words is None else words.as_str(),
                     channels=_channels(cue.get("with")),
                     tempo=1.0 if tempo is None else tempo.as_float(0.2, 5),
+                    hands=None if hands is None else _pair(hands),
                 )
             )
         start += length

@@ -11,18 +11,18 @@ from game.core import Clip
 from game.core import quaternion as quat
 from game.core.humanoid import REFERENCE
 from game.tools.perform import contact
-from game.tools.perform.arms import SIDES, finger_rotations, mirror_points, mirror_rotations, solve_arm
+from game.tools.perform.arms import SIDES, finger_rotations, mirror_points, mirror_rotations, solve_arm, unit
 from game.tools.perform.body import CHAIN, CHANNELS, legs, torso
 from game.tools.perform.hands import HandPath, perform_hand
 from game.tools.perform.stage import Stage
-from game.tools.perform.timing import DT_S, band_noise, delay, spring
+from game.tools.perform.timing import DT_S, band_noise, blend_scalar, delay, spring
 
 __all__ = ["render_stage"]
 
 Floats = NDArray[np.floating[Any]]
 _DELAYS_S = (0.0, 0.03, 0.06, 0.10, 0.0)
 _STIFFNESS = (1.15, 1.0, 0.85, 0.75, 1.0)
-_PASSES = 5
+_PASSES = 7
 
 
 def _lungs(stage: Stage, rng: np.random.Generator) -> Floats:
@@ -41,9 +41,27 @@ def _lungs(stage: Stage, rng: np.random.Generator) -> Floats:
     return spring(level[:, None], 3.0, 1.0)[:, 0]
 
 
+def _notice(stage: Stage, rng: np.random.Generator) -> None:
+    """Nobody holds the head still while waiting: now and then it takes another bearing near the posture's own."""
+    attention, tempo = stage.effort.attention, stage.effort.tempo
+    yaw, pitch = np.zeros(len(stage.time)), np.zeros(len(stage.time))
+    at = rng.uniform(*attention.every_s)
+    while at < stage.time[-1]:
+        to_yaw, to_pitch = rng.uniform(-1.0, 1.0, 2) * (attention.yaw_deg, attention.pitch_deg)
+        duration = attention.move_s * (0.8 + 0.4 * rng.random())
+        blend_scalar(yaw, stage.time, at, duration, float(to_yaw), stage.effort.settle)
+        blend_scalar(pitch, stage.time, at + 0.02 * tempo, duration, float(to_pitch), stage.effort.settle)
+        at += rng.uniform(*attention.every_s)
+    stage.added["head_yaw"] += yaw
+    stage.added["head_pitch"] += pitch
+    # The trunk follows a little, later.
+    stage.added["twist"] += 0.2 * delay(yaw, 0.15 * tempo)
+
+
 def _trunk_channels(stage: Stage, rng: np.random.Generator) -> tuple[dict[str, Floats], Floats]:
     """Body channels as moved, and the shiver of both wrists (F, 2, 3) metres."""
     effort, frames = stage.effort, len(stage.time)
+    _notice(stage, rng)
     keyed = np.stack([delay(stage.base[n] + stage.added[n], _DELAYS_S[CHAIN[n]] * effort.drag) for n in CHANNELS], -1)
     frequency, damping, response = effort.spring
     moved = spring(keyed, frequency * np.array([_STIFFNESS[CHAIN[n]] for n in CHANNELS]), damping, response)
@@ -62,7 +80,7 @@ def _trunk_channels(stage: Stage, rng: np.random.Generator) -> tuple[dict[str, F
     for i, (name, amount) in enumerate(shakes.items()):
         x[name] += shiver[:, i] * amount
     # The soft knees of someone who stands at ease.
-    x["up"] = x["up"] - 0.004
+    x["up"] = x["up"] - 0.012
     return x, 0.0024 * shiver[:, 6:].reshape(frames, 2, 3)
 
 
@@ -108,7 +126,7 @@ def render_stage(stage: Stage, rng: np.random.Generator, name: str) -> Clip:
 def _reach(local: Floats, translation: Floats, paths: dict[str, HandPath]) -> None:
     """Fill in both arms so that they reach their paths without entering trunk, head, table or each other."""
     push = {side: np.zeros_like(path.wrist) for side, path in paths.items()}
-    forward = np.array([0.0, 0.15, 1.0]) / np.linalg.norm([0.0, 0.15, 1.0])
+    chest = REFERENCE.index["chest"]
     for turn in range(_PASSES + 1):
         position, rotation = REFERENCE.to_model(local, translation)
         for side, path in paths.items():
@@ -125,15 +143,25 @@ def _reach(local: Floats, translation: Floats, paths: dict[str, HandPath]) -> No
         if turn == _PASSES:
             return
         position, rotation = REFERENCE.to_model(local, translation)
-        points = {}
+        points, local_wrist = {}, {}
         for side in SIDES:
             points[side], radii = contact.arm_points(position, rotation, side)
-        chest_front = quat.rotate(rotation[:, REFERENCE.index["chest"]], np.broadcast_to(forward, push["left"].shape))
-        # The arm whose hand is farther from the chest lies outside and gives way; joined hands share the way.
-        apart = {
-            side: contact.arms_apart(points[other], points[side], radii, np.zeros_like(chest_front))
-            for side, other in (("left", "right"), ("right", "left"))
-        }
-        for side in SIDES:
+            out = mirror_points(points[side][:, 0] - position[:, chest], side)
+            local_wrist[side] = quat.rotate(quat.conjugate(mirror_rotations(rotation[:, chest], side)), out)
+        # The rule of folded arms and joined hands. Folded: the arm farther from the chest lies on the other and gives
+        # way, forward; the inner one belongs to the trunk. Joined: both give way, each to its own side.
+        lead = _step((local_wrist["left"][:, 2] - local_wrist["right"][:, 2]) / 0.01)
+        folded = _step(-(local_wrist["left"][:, 0] + local_wrist["right"][:, 0]) / 0.015)[:, None]
+        for side, other in zip(SIDES, SIDES[::-1], strict=True):
+            front = np.array([0.0, 0.12, 1.0]) * folded + np.array([1.0, 0.0, 0.0]) * (1.0 - folded)
+            turned = mirror_points(quat.rotate(mirror_rotations(rotation[:, chest], side), unit(front)), side)
+            share = folded[:, 0] * (lead if side == "left" else 1.0 - lead) + (1.0 - folded[:, 0]) * 0.5
+            apart = share * contact.arms_apart(points[side], points[other], radii, turned)
             body = contact.body_push(points[side], radii, position, rotation)
-            push[side] = push[side] + mirror_points(contact.spread_pushes(body + 0.5 * apart[side]), side)
+            wanted = contact.spread_pushes(body + 0.8 * apart[:, None] * turned)
+            push[side] = push[side] + mirror_points(wanted, side)
+
+
+def _step(x: Floats) -> Floats:
+    """0 far below, 1 far above zero, smoothly."""
+    return np.asarray(0.5 + 0.5 * np.tanh(x))

@@ -63,7 +63,7 @@ POSTURES: Mapping[str, Posture] = MappingProxyType(
             head_pitch=-3,
         ),
         "crouched": _of(
-            "edge", "edge", 0.55, up=-0.36, forward=0.02, pelvis_yaw=-8, lean=8, curl=2, shoulders=6, head_pitch=-4
+            "edge", "edge", 0.55, up=-0.30, forward=0.0, pelvis_yaw=-8, lean=16, curl=8, shoulders=6, head_pitch=-8
         ),
         "startled": _of(
             "startle",
@@ -96,7 +96,8 @@ def take_posture(stage: Stage, cue: Cue, owner: int) -> float:
     sign = -1.0 if cue.side == "right" else 1.0
     trunk = {name: value * (sign if name in MIRRORED else 1.0) for name, value in posture.trunk.items()}
     stage.posture(cue, owner, trunk, posture.reach_s * tempo, ease)
-    for i, (side, target) in enumerate(((cue.side, posture.main), (other_side(cue.side), posture.other))):
+    main, other = cue.hands or (posture.main, posture.other)
+    for i, (side, target) in enumerate(((cue.side, main), (other_side(cue.side), other))):
         stage.hands[side].home.append(
             HandKey(
                 max(cue.at_s, 0.0) + 0.05 * i * tempo,

@@ -51,7 +51,7 @@ def _fan_nose(m: Move) -> None:
         m.leave,
         fade=0.12,
         hand="main",
-        shift=lambda t: (0.085 * sine(1.9, t), 0.0, 0.01 * sine(1.9, t)),
+        shift=lambda t: (0.055 * sine(1.9, t), 0.0, 0.01 * sine(1.9, t)),
         turn=lambda t: (22 * sine(1.9, t, 0.07), 12 * sine(1.9, t, 0.07), 0.0),
         head_yaw=lambda t: 5 * sine(1.3, t),
     )
@@ -135,12 +135,12 @@ def _exhale(m: Move) -> None:
 def _finger_tap(m: Move) -> None:
     m.body(m.start, 0.4, head_roll=3, head_yaw=-4)
     m.hand("main", m.start, 0.4, "drum")
-    m.wave(m.arrive, m.leave, fade=0.08, hand="main", curl=lambda t: -26 * np.maximum(0.0, np.sign(sine(3.3, t))))
+    m.wave(m.arrive, m.leave, fade=0.08, hand="main", curl=lambda t: -26 * pulse(3.3, t))
 
 
 def _finger_drum(m: Move) -> None:
     # On the other arm, where the hand already lies when arms are crossed.
-    m.wave(m.start, m.leave, fade=0.08, hand="main", curl=lambda t: -34 * np.maximum(0.0, np.sign(sine(4.3, t))))
+    m.wave(m.start, m.leave, fade=0.08, hand="main", curl=lambda t: -32 * pulse(4.3, t))
     m.body(m.after(0.5), 0.2, head_yaw=9, head_roll=4)
     m.body(m.after(1.1), 0.2, head_yaw=-8, head_roll=-5)
 
@@ -214,8 +214,8 @@ def _flinch(m: Move) -> None:
         head_yaw=16,
         head_roll=-12,
     )
-    m.hand("main", m.start, 0.18, "shield_a")
-    m.hand("other", m.after(0.04), 0.20, "shield_b")
+    m.hand("main", m.start, 0.26, "shield_a")
+    m.hand("other", m.after(0.04), 0.29, "shield_b")
     m.tremble(m.arrive, m.leave, 0.8)
 
 
@@ -352,7 +352,7 @@ SELF_TOUCH: Mapping[str, Act] = MappingProxyType(
         "wring_hands": Act(0.45, 0.45, _wring_hands),
         "bite_nails": Act(0.45, 0.45, _bite_nails),
         "rub_arms": Act(0.5, 0.5, _rub_arms),
-        "flinch": Act(0.24, 0.5, _flinch),
+        "flinch": Act(0.34, 0.5, _flinch),
         "clap": Act(0.45, 0.45, _clap),
         "hands_to_cheeks": Act(0.5, 0.5, _hands_to_cheeks),
         "smooth_cloth": Act(0.55, 0.5, _smooth_cloth),

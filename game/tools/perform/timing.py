@@ -9,7 +9,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
-__all__ = ["DT_S", "Ease", "band_noise", "blend_scalar", "delay", "ease", "minimum_jerk", "smooth_window", "spring"]
+from game.core import quaternion as quat
+
+__all__ = [
+    "DT_S",
+    "Ease",
+    "band_noise",
+    "blend_scalar",
+    "delay",
+    "ease",
+    "minimum_jerk",
+    "smooth_window",
+    "spring",
+    "spring_rotation",
+]
 
 Floats = NDArray[np.floating[Any]]
 DT_S = 1.0 / 30.0
@@ -67,6 +80,15 @@ def blend_scalar(track: Floats, time_s: Floats, start_s: float, duration_s: floa
     track[on] += (target - track[on]) * w
 
 
+def _free_motion(k1: Floats, k2: Floats) -> Floats:
+    """(n, 2, 2): d/dt of (y, y') where y + k1 y' + k2 y'' = 0; k1, k2 (n,)."""
+    a = np.zeros((len(k1), 2, 2))
+    a[:, 0, 1] = 1.0
+    a[:, 1, 0] = -1.0 / k2
+    a[:, 1, 1] = -k1 / k2
+    return a
+
+
 def spring(x: Floats, frequency_hz: ArrayLike, damping: ArrayLike, response: ArrayLike = 0.0) -> Floats:
     """y + k1 y' + k2 y'' = x + k3 x' with k1 = z/πf, k2 = 1/(2πf)², k3 = rz/2πf, starting at rest in x[0].
 
@@ -80,10 +102,7 @@ def spring(x: Floats, frequency_hz: ArrayLike, damping: ArrayLike, response: Arr
     k1, k2, k3 = z / (np.pi * f), 1.0 / (2.0 * np.pi * f) ** 2, r * z / (2.0 * np.pi * f)
     flat = np.stack([k1.ravel(), k2.ravel()], -1)
     kinds, which = np.unique(flat, axis=0, return_inverse=True)
-    a = np.zeros((len(kinds), 2, 2))
-    a[:, 0, 1] = 1.0
-    a[:, 1, 0] = -1.0 / kinds[:, 1]
-    a[:, 1, 1] = -kinds[:, 0] / kinds[:, 1]
+    a = _free_motion(kinds[:, 0], kinds[:, 1])
     b = np.stack([np.zeros(len(kinds)), 1.0 / kinds[:, 1]], -1)[..., None]
     phi = expm(a * DT_S)
     hold = np.linalg.solve(a, (phi - np.eye(2)) @ b)
@@ -99,6 +118,36 @@ def spring(x: Floats, frequency_hz: ArrayLike, damping: ArrayLike, response: Arr
     for i in range(1, frames):
         y, v = p00[i] * y + p01[i] * v + forced[i - 1, :, 0], p10[i] * y + p11[i] * v + forced[i - 1, :, 1]
         out[i] = y
+    return out
+
+
+def spring_rotation(q: Floats, frequency_hz: Floats, damping: Floats) -> Floats:
+    """A hand's rotation drawn to a moving one by a spring on the sphere, so that large turns keep an even speed.
+
+    q: (F, 4) unit quaternions; frequency_hz, damping: (F,). -> (F, 4). Springing the four numbers instead would cut
+    across the sphere and snap round in the middle of a half turn.
+    """
+    kinds, which = np.unique(np.stack([frequency_hz, damping], -1), axis=0, return_inverse=True)
+    k1 = kinds[:, 1] / (np.pi * kinds[:, 0])
+    k2 = 1.0 / (2.0 * np.pi * kinds[:, 0]) ** 2
+    step = expm(_free_motion(k1, k2) * DT_S)[which.ravel()]
+    out = np.empty_like(q)
+    out[0] = at = q[0]
+    speed = np.zeros(3)
+    last = quat.IDENTITY
+    for i in range(1, len(q)):
+        away = quat.multiply(at, quat.conjugate(q[i]))
+        if away @ last < 0.0:
+            away = -away
+        last = away
+        length = float(np.sqrt(away[:3] @ away[:3]))
+        vector = away[:3] * (2.0 * np.arctan2(length, away[3]) / length if length > 1e-9 else 2.0)
+        vector, speed = (
+            step[i, 0, 0] * vector + step[i, 0, 1] * speed,
+            step[i, 1, 0] * vector + step[i, 1, 1] * speed,
+        )
+        at = quat.multiply(quat.exp(vector), q[i])
+        out[i] = at
     return out
 
 
