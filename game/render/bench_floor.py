@@ -63,7 +63,11 @@ class BareScene(Owner):
         self._frame = self.own(FrameBlock(device))
         self._joints = self.own(context.buffer(reserve=64 * 48, dynamic=True))
 
-    def draw(self, time_s: float) -> None:
+    def release(self) -> None:
+        self._device.nowhere.use()
+        super().release()
+
+    def draw(self, time_s: float = 0.0) -> None:
         """One frame."""
         context = self._context
         rows = np.tile(np.eye(3, 4, dtype=np.float32), (_JOINTS, 1, 1))

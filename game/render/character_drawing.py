@@ -26,7 +26,7 @@ class CharacterDrawing(Owner):
 
     def __init__(self, device: Device, model: CharacterModel, level: Level) -> None:
         super().__init__()
-        self._context = device.context
+        self._context, self._nowhere = device.context, device.nowhere
         self._mesh = mesh = model.mesh(level.triangles)
         self._joints = self.own(device.context.buffer(reserve=MAX_JOINTS * 48, dynamic=True))
         above = mesh.above
@@ -66,10 +66,6 @@ class CharacterDrawing(Owner):
             )
         )
         self._captured = [self.own(device.context.buffer(reserve=count * 16)) for _ in range(4)]
-        # Transform feedback writes no pixels but GL wants a complete framebuffer bound, which EGL without a
-        # surface does not have.
-        pixel = self.own(device.context.renderbuffer((1, 1)))
-        self._anywhere = self.own(device.context.framebuffer([pixel]))
 
     def _make_drawing(self, device: Device, mesh: CharacterMesh, level: Level) -> None:
         clip, terms, place, _ = self._captured
@@ -178,7 +174,7 @@ class CharacterDrawing(Owner):
         rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
         self._joints.write(rows)
         self._joints.bind_to_uniform_block(1)
-        self._anywhere.use()
+        self._nowhere.use()
         count = len(self._mesh.position) if whole else self._mesh.above.vertices
         self._skinning.transform(self._captured, moderngl.POINTS, vertices=count)
         return self._screen_box(rows, world_to_clip, size)

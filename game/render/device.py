@@ -53,6 +53,11 @@ class Device:
         # Software rasterisers pay for every vertex and pixel; a few choices (who selects silhouettes) depend on it.
         self.software = any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swiftshader", "software"))
         self.max_samples = min(4, int(info.get("GL_MAX_SAMPLES", 4)))
+        pixel = context.renderbuffer((1, 1))
+        # Bound where nothing is drawn: GL wants a complete framebuffer even for transform feedback, which EGL without
+        # a surface does not have, and the bound one must not be released.
+        self.nowhere = context.framebuffer([pixel])
+        self._pixel = pixel
 
     @classmethod
     def headless(cls, width: int, height: int) -> Device:
@@ -149,6 +154,8 @@ class Device:
         return self.context.vertex_array(program, [entry for entry in entries if len(entry) > 2], index)
 
     def release(self) -> None:
+        self.nowhere.release()
+        self._pixel.release()
         self.context.release()
 
 

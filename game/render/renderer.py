@@ -67,6 +67,7 @@ class Renderer(Owner):
             self._painter = FacePainter(self.device, level.face_size)
 
     def _drop_level(self) -> None:
+        self.device.nowhere.use()
         for part in (self._targets, self._character, self._painter):
             if part is not None:
                 part.release()
@@ -100,6 +101,7 @@ class Renderer(Owner):
         targets = self._targets
         if targets is None or targets.size != self.device.size:
             if targets is not None:
+                self.device.nowhere.use()
                 targets.release()
             samples = min(self.level.samples, self.device.max_samples)
             self._targets = targets = FrameTargets(self.device, self.device.size, samples)

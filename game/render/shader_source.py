@@ -23,8 +23,10 @@ SHADER_FOLDER = Path(__file__).parent / "shaders"
 
 _INCLUDE = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 _NEEDS = re.compile(r"^\s*#needs\s+(.+?)\s*$")
-# Mesa "2:14(7): error: …", NVIDIA "2(14) : error C1008: …", Apple/AMD/Intel "ERROR: 2:14: …"
-_LOG_LINE = re.compile(r"^(?:ERROR:\s*|WARNING:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:?\s*(.*)$")
+# Mesa "0:20014(7): error: …", NVIDIA "0(20014) : error C1008: …", Apple/AMD/Intel "ERROR: 0:20014: …"
+_LOG_LINE = re.compile(r"^(?:ERROR:\s*|WARNING:\s*)?\d+(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:?\s*(.*)$")
+# A file's number times this is added to its line numbers: drivers lose GLSL's own source string numbers in part.
+_FILE_STEP = 10_000
 
 
 class ShaderError(GameError):
@@ -36,7 +38,7 @@ class ShaderSource:
     """The assembled text of one stage and the files behind its ``#line`` numbers."""
 
     text: str
-    files: list[str] = field(default_factory=list)  # file number -> name, shared by the stages of one program
+    files: list[str] = field(default_factory=list)  # number -> name, shared by the stages of one program
     used: set[str] = field(default_factory=set)  # defines asked for by any file
 
 
@@ -75,13 +77,13 @@ def _append(
         raise ShaderError(f"{came_from or name}: no shader file {name} in {folder.name}/")
     number = len(source.files)
     source.files.append(name)
-    lines.append(f"#line 1 {number}")
+    lines.append(f"#line {number * _FILE_STEP + 1}")
     for row, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         include, needs = _INCLUDE.match(line), _NEEDS.match(line)
         if include:
             if include[1] not in seen:
                 _append(include[1], defines, lines, source, folder, seen, came_from=f"{name}:{row}")
-            lines.append(f"#line {row + 1} {number}")
+            lines.append(f"#line {number * _FILE_STEP + row + 1}")
         elif needs:
             for define in needs[1].split():
                 if define not in defines:
@@ -89,7 +91,7 @@ def _append(
                 if define not in source.used:
                     lines.append(f"#define {define} {defines[define]}")
                 source.used.add(define)
-            lines.append(f"#line {row + 1} {number}")
+            lines.append(f"#line {number * _FILE_STEP + row + 1}")
         else:
             lines.append(line)
 
@@ -99,6 +101,7 @@ def explain_log(log: str, files: list[str]) -> str:
     messages = []
     for line in log.splitlines():
         match = _LOG_LINE.match(line.strip())
-        if match and int(match[1]) < len(files):
-            messages.append(f"{files[int(match[1])]}:{match[2] or match[3]}: {match[4]}")
+        number, row = divmod(int(match[1] or match[2]), _FILE_STEP) if match else (len(files), 0)
+        if match and number < len(files):
+            messages.append(f"{files[number]}:{row}: {match[3]}")
     return "; ".join(messages[:4]) if messages else " ".join(log.split())
