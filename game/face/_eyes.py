@@ -173,7 +173,9 @@ def eyeballs(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> N
     """White, iris, pupil, the lid's shadow, lights and water, all inside the opening."""
     if lid.ajar.max() <= 0.0:
         return
-    visible = np.array([_smooth(4.0 * a) for a in lid.ajar.tolist()]).reshape(2, 1, 1, 1)
+    # While > < opens, the eyeball comes only when the strokes have nearly become lids.
+    opened = 1.0 - _smooth((float(params[INDEX["eye_squeeze"]]) - 0.6) / 0.4)
+    visible = np.array([opened * _smooth(4.0 * a) for a in lid.ajar.tolist()]).reshape(2, 1, 1, 1)
     white = _place(_rows(lid.x, lid.lower, lid.upper), style).reshape(2, 2, _COLUMNS, 2)
     sheet.grid(white, np.broadcast_to(ink(style.eye_white), (2, 2, _COLUMNS, 4)) * visible)
 
@@ -183,6 +185,7 @@ def eyeballs(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> N
             "look_x", "look_y", "iris_size", "iris_alpha", "pupil_size", "highlight", "sparkle", "tear_well",
         )
     )  # fmt: skip
+    blank = _smooth((blank - 0.3) / 0.4)  # a half-faded iris looks blind: pass through it quickly
     centre = np.array([[[10.0 * look_x - 1.5, 11.0 * look_y - 2.0]], [[-10.0 * look_x - 1.5, 11.0 * look_y - 2.0]]])
     # Lights stand on the same screen side in both eyes: x is mirrored with the eye and back.
     spots = np.array(
