@@ -220,14 +220,14 @@ def _choose_level(window: Window, settings: Settings) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window and play until it is closed."""
-    session = open_session(args)
-    pygame.display.init()
     try:
+        _need_display()
+        session = open_session(args)
         width, height = args.size
         device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)
     except MissingPart as error:
         pygame.display.quit()
-        print(f"error: {error}; without a window: run_game.py autoplay, run_game.py snapshot", file=sys.stderr)
+        print(f"error: {error}; all the same without a window: run_game.py autoplay | snapshot", file=sys.stderr)
         return 2
     window = Window(session, device)
     try:
@@ -240,6 +240,21 @@ def run(args: argparse.Namespace) -> int:
         device.release()
         pygame.display.quit()
     return 0
+
+
+def _need_display() -> None:
+    """Start SDL's video. Raises MissingPart where there is no screen (SDL would quietly draw into nothing)."""
+    nowhere = MissingPart("no display (no X11 or Wayland session found); start a desktop session, or xvfb-run")
+    asked = os.environ.get("SDL_VIDEODRIVER")
+    if sys.platform.startswith("linux") and not asked and not {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
+        raise nowhere
+    try:
+        pygame.display.init()
+    except pygame.error as error:
+        raise MissingPart(f"no display ({error}); start a desktop session, or xvfb-run") from None
+    driver = pygame.display.get_driver()
+    if driver in {"offscreen", "dummy"} and asked != driver:
+        raise nowhere
 
 
 def _loop(window: Window) -> None:
