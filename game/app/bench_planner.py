@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 
 from game.core.emotion_space import with_neutral
 from game.core.humanoid import BODY_PARTS
-from game.embos import LAYERS, MotionUnit, Planner, PlannerSignal, UnitLibrary
+from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary
 
 __all__ = ["PlannerRow", "made_up_library", "run"]
 
 _PER_LAYER = 40
+_CROWD_LOOK_S = 0.1
 _HALF_LIFE_S = 8.0
 _TICK_S = 1.0 / 30.0
 _NEW_FEELING_S = 10.0
@@ -29,10 +30,15 @@ _NEW_FEELING_S = 10.0
 
 @dataclass(frozen=True)
 class PlannerRow:
-    """ns per character and tick. tick: with emotions that drift all the time (mean, median, least over ticks);
-    judged: eq. 1 computed for every character; felt: φ_state computed for every character; floor: see above."""
+    """ns per character and tick.
+
+    look_s: as PlannerConfig, 0: every tick. tick: with emotions that drift all the time and words that come now
+    and then (mean, median, least over ticks); judged: eq. 1 computed for every character; felt: φ_state computed
+    for every character; floor: see above.
+    """
 
     characters: int
+    look_s: float
     tick_mean_ns: float
     tick_median_ns: float
     tick_least_ns: float
@@ -66,8 +72,9 @@ def made_up_library(seed: int, per_layer: int = _PER_LAYER) -> UnitLibrary:
 
 def run(as_json: bool, seed: int = 1, counts: tuple[int, ...] = (1, 100, 1000, 10_000)) -> list[PlannerRow]:
     """Measure, print (a table or JSON), return the rows."""
-    planner = Planner(made_up_library(seed))
-    rows = [_measure(planner, n, seed) for n in counts]
+    library = made_up_library(seed)
+    hero, crowd = Planner(library), Planner(library, PlannerConfig(look_s=_CROWD_LOOK_S))
+    rows = [_measure(planner, n, seed) for planner in (hero, crowd) for n in counts if planner is hero or n >= 100]
     if as_json:
         print(json.dumps({"planner": [asdict(row) for row in rows]}))
         return rows
@@ -109,8 +116,16 @@ def _measure(planner: Planner, n: int, seed: int) -> PlannerRow:
     floor = _least(_floor(rng, n), repeats) / n
     mean = float(settled.mean())
     return PlannerRow(
-        n, mean, float(np.median(settled)), float(settled.min()), judged, felt, floor, mean / max(floor, 1e-9)
-    )
+        n,
+        planner.config.look_s,
+        mean,
+        float(np.median(settled)),
+        float(settled.min()),
+        judged,
+        felt,
+        floor,
+        mean / max(floor, 1e-9),
+    )  # fmt: skip
 
 
 def _feelings(rng: np.random.Generator, n: int) -> NDArray[np.float64]:

@@ -19,9 +19,10 @@ class PlannerConfig:
 
     layers: upper first. continuity_floor, transition_share: 0..1; sigma_rad > 0. minimum: layer -> φ_time while
     waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps
-    going. spread: scales the takes' spread in the random factors. rest: layer -> φ_state of its rest unit.
-    presence: 0..1, see scores.presence. tolerance: change of emotion that makes φ_state be computed anew.
-    radius: r of eq. 5. word_window_s: seconds a word's moment stays open.
+    going. spread: scales the takes' spread in the random factors. look_s: seconds between two looks at times and
+    emotion, 0: every tick. rest: layer -> φ_state of its rest unit. presence: 0..1, see scores.presence.
+    tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a
+    word's moment stays open.
     """
 
     layers: tuple[str, ...] = LAYERS
@@ -34,6 +35,7 @@ class PlannerConfig:
     steady: float = 0.5
     least_s: Mapping[str, float] = field(default_factory=lambda: {"posture": 1.0, "gesture": 0.25, "mannerism": 0.25})
     spread: float = 1.0
+    look_s: float = 0.0
     rest: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LAYERS_WITH_REST, 0.02))
     presence: float = 1.0
     tolerance: float = 0.02
@@ -49,6 +51,7 @@ class PlannerConfig:
             ("sigma_rad", 1e-6, 100.0),
             ("steady", 0.0, 1.0),
             ("spread", 0.0, 10.0),
+            ("look_s", 0.0, 1.0),
             ("presence", 0.0, 1.0),
             ("tolerance", 0.0, 1.0),
             ("radius", 1e-3, 100.0),
@@ -68,7 +71,10 @@ def load_config(path: Path) -> PlannerConfig:
         values["layers"] = tuple(item.as_str() for item in layers)
     for section, names in (
         ("continuity", {"floor": "continuity_floor", "transition_share": "transition_share", "sigma_rad": "sigma_rad"}),
-        ("time", {"minimum": "minimum", "steady": "steady", "least_s": "least_s", "spread": "spread"}),
+        (
+            "time",
+            {"minimum": "minimum", "steady": "steady", "least_s": "least_s", "spread": "spread", "look_s": "look_s"},
+        ),
         ("state", {"rest": "rest", "presence": "presence", "tolerance": "tolerance"}),
         ("mixing", {"radius": "radius"}),
         ("words", {"window_s": "word_window_s"}),

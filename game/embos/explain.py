@@ -45,7 +45,7 @@ def explain(
     t = planner.tables
     rows = np.array([character])
     state = planner.with_emotion(state, signal.emotion)
-    factors = planner.evaluate(state, rows, signal.words[rows], signal.time_s + 0.5 * dt_s)
+    factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s))
     result: list[list[Candidate]] = []
     for at, layer in enumerate(t.layers):
         candidates: list[Candidate] = []

@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 RADIUS = 0.5
 """r of the radial basis function."""
 
+_FAR = -1e12
 _LOWEST_LOG = -600.0
 """Relative weights below exp(this) are kept there: they are nothing, and must not underflow."""
 
@@ -26,12 +27,15 @@ def mix_weights(character: Floats, intensity: Floats, exists: NDArray[Any], radi
     character, intensity, exists (σ): (..., 7), broadcasting -> (..., 7), sums to 1, or all 0 without a variant.
     """
     has = np.asarray(exists, dtype=bool)
-    square = (character * character).sum(axis=-1, keepdims=True)
-    distance = square - character * character + (character - intensity) ** 2
-    log = np.where(has, -distance / (radius * radius), -np.inf)
-    top = np.where(has.any(axis=-1, keepdims=True), log.max(axis=-1, keepdims=True), 0.0)
-    weight = np.where(has, np.exp(np.maximum(log - top, _LOWEST_LOG)), 0.0)
-    return np.asarray(weight / np.maximum(weight.sum(axis=-1, keepdims=True), 1e-300))
+    # |i'|² is the same for every k and falls out of the quotient; i_k² − 2·i'_k·i_k is left of the distance.
+    log = (2.0 * character - intensity) * intensity
+    log *= 1.0 / (radius * radius)
+    log = np.where(has, log, _FAR)
+    log -= log.max(axis=-1, keepdims=True)
+    weight = np.exp(np.maximum(log, _LOWEST_LOG, out=log))
+    weight *= has
+    weight /= np.maximum(weight.sum(axis=-1, keepdims=True), 1e-300)
+    return weight
 
 
 def mix(values: Floats, weights: Floats) -> Floats:

@@ -7,6 +7,7 @@ stands. The result is the same as judging every frame.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -64,8 +65,7 @@ class Planner:
     ) -> tuple[PlannerState, Decisions]:
         """One tick: eq. 1 where something has happened, the standing decision elsewhere.
 
-        A threshold counts as passed when it lies before the middle of the coming tick, so that lengths are right
-        on average. Raises BadInput for a signal of the wrong shape.
+        Raises BadInput for a signal of the wrong shape.
         """
         n = len(state)
         emotion, words = signal.emotion, signal.words
@@ -75,25 +75,38 @@ class Planner:
                 expected=f"emotion {(n, 7)} and words {state.words.shape}",
                 seen=f"{emotion.shape} and {words.shape}",
             )
-        now = signal.time_s + 0.5 * dt_s
+        now = self.moment(signal.time_s, dt_s)
         said_anew, moved_by = words != state.words, np.abs(emotion - state.emotion)
         new_words = np.count_nonzero(said_anew)
-        moving = np.count_nonzero(moved_by > self.config.tolerance)
-        if not new_words and not moving and now <= state.soonest_s:
+        looking = self._looks(signal.time_s, dt_s)
+        moving = looking and np.count_nonzero(moved_by > self.config.tolerance)
+        all_begun = state.soonest_s > -np.inf
+        if not new_words and not moving and all_begun and (not looking or now <= state.soonest_s):
             return _standing(state)
-        due = state.next_s < now
-        if moving:
-            moved = moved_by.max(axis=1) > self.config.tolerance
-            due |= moved
+        due = state.next_s < now if looking else np.isneginf(state.next_s)  # −inf: has not begun yet
+        moved = moved_by.max(axis=1) > self.config.tolerance if looking else due
+        if np.count_nonzero(moved):
+            due = due | moved
             state = self._feel(state, emotion, moved.nonzero()[0])
         if new_words:
-            due |= said_anew.any(axis=1)
+            due = due | said_anew.any(axis=1)
             state = state.renewed(words=words.copy())
         rows = due.nonzero()[0]
         # Pieces that stay in the cache; a character's result does not depend on its piece.
         pieces = [rows[i : i + CHUNK] for i in range(0, rows.size, CHUNK)]
         judged = [self.evaluate(state, piece, words[piece], now) for piece in pieces]
         return self._apply(state, rows, judged, signal.time_s, now)
+
+    def moment(self, time_s: float, dt_s: float) -> float:
+        """Thresholds before this moment count as passed: half a look ahead, so that lengths are right on average."""
+        return time_s + 0.5 * max(self.config.look_s, dt_s)
+
+    def _looks(self, time_s: float, dt_s: float) -> bool:
+        """Whether times and emotions are looked at in this tick (config.look_s)."""
+        look_s = self.config.look_s
+        if look_s <= dt_s:
+            return True
+        return math.floor((time_s + 1e-6) / look_s) > math.floor((time_s - dt_s + 1e-6) / look_s)
 
     def explain(
         self, state: PlannerState, signal: PlannerSignal, character: int, dt_s: float = TICK_S

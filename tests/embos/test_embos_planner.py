@@ -52,9 +52,10 @@ def wander(n: int, library: UnitLibrary, ticks: int) -> list[PlannerSignal]:
     return signals
 
 
-def test_alone_and_in_a_crowd_are_the_same_to_the_bit(made_up: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("look_s", [0.0, 0.1])
+def test_alone_and_in_a_crowd_are_the_same_to_the_bit(look_s: float, made_up: Callable[..., Any]) -> None:
     library = made_up(0, with_parts=True).library
-    planner, n = Planner(library), 150  # more than two pieces of 64
+    planner, n = Planner(library, PlannerConfig(look_s=look_s)), 150  # more than two pieces of 64
     signals = wander(n, library, 240)
     state, crowd = planner.start(n, 7), []
     for signal in signals:
@@ -141,6 +142,18 @@ def test_rest_fills_the_waiting_time() -> None:
     assert [names[1] for _, names, _ in log] == ["rest_gesture"] * len(log), "no word, no gesture"
     starts = [tick * DT for tick, names, started in log if started[2] and names[2] == "m"]
     assert starts == pytest.approx([0.0, 6.0], abs=0.05)
+
+
+def test_looking_ten_times_a_second_keeps_lengths_and_hears_words_at_once() -> None:
+    names = [names[2] for _, names, _ in play(small(look_s=0.1), 6.5)]
+    changes = [i * DT for i in range(1, len(names)) if names[i] != names[i - 1]]
+    assert changes == pytest.approx([2.0, 6.0], abs=0.07)
+    planner = small(look_s=0.1)
+    state = planner.start(1, 1)
+    for tick in range(12):
+        said = np.full((1, 1), float(tick == 11))
+        state, d = planner.advance(state, PlannerSignal(JOY, said, tick * DT))
+    assert planner.library.units[d.unit[0, 1]].name == "g"
 
 
 def test_a_gesture_needs_its_word_only_to_begin() -> None:
