@@ -170,6 +170,8 @@ class Renderer(Owner):
             raise RuntimeError("nothing has been drawn yet")
         width, height = self.device.size
         data = self._shown.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
+        if self.device.windowed:
+            _ = self.device.context.error  # moderngl asks the window for an attachment, which GL minds but obeys
         return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
 
 
