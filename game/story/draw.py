@@ -30,8 +30,11 @@ def draw_choices(pool: Sequence[ChoiceDef], count: int, acts: ActTable, seed: in
     for act in chosen_acts:
         counter += 1
         options = by_act[act]
-        drawn.append(options[pick_weighted([choice.weight for choice in options], uniform(seed, counter))])
-    rest = [choice for choice in pool if choice not in drawn]
+        if len(options) == 1:
+            drawn.append(options[0])
+        else:
+            drawn.append(options[pick_weighted([choice.weight for choice in options], uniform(seed, counter))])
+    rest = [choice for choice in pool if choice not in drawn] if len(drawn) < count else []
     while len(drawn) < count and rest:
         counter += 1
         drawn.append(rest.pop(int(uniform(seed, counter) * len(rest))))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -13,7 +12,7 @@ from game.story.expressions import Scope
 from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script, Speaker
 from game.story.state import StoryState
 from game.story.text import Text, fill
-from game.story.vocabulary import ENV, OUTCOMES, Value
+from game.story.vocabulary import ENV, OUTCOMES, Value, environment
 
 __all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "advance", "resume"]
 
@@ -168,7 +167,7 @@ class _Run:
         self.said = set(state.said)
         self.chosen = set(state.chosen)
         self.seen = {*state.earlier, *state.said, *state.chosen, *state.visits}
-        self.names: dict[str, Value] = {**_environment(env), **state.variables}
+        self.names: dict[str, Value] = {**environment(env), **state.variables}
         self.names["item"] = state.item
         self.names["visit"] = float(state.visit)
         self.scope = Scope(self.names, self.visits, self.seen)
@@ -284,7 +283,8 @@ class _Run:
     def say(self, say: SayDef) -> None:
         if not self.holds(say):
             return
-        fresh = [line for line in say.lines if self.holds(line) and (line.again or line.id not in self.said)]
+        said = self.said
+        fresh = [line for line in say.lines if (line.id not in said or line.again) and self.holds(line)]
         if not fresh:
             return
         # On a later visit, what was said on an earlier one comes last.
@@ -313,6 +313,9 @@ class _Run:
         return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone)
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
+        if "{" not in text.en and "{" not in text.ja:
+            return text
+
         def value(name: str, language: str) -> str | None:
             if name == keep or name not in self.names:
                 return None
@@ -330,9 +333,7 @@ class _Run:
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ChoiceDef) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        if choice.once == "talk" and choice.id in self.chosen:
-            return False
-        if choice.once == "stall" and choice.id in self.seen:
+        if choice.once != "never" and choice.id in (self.chosen if choice.once == "talk" else self.seen):
             return False
         return choice.condition is None or bool(choice.condition.evaluate(self.scope))
 
@@ -346,13 +347,14 @@ class _Run:
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
         drawn = draw_choices(pool, node.draw, self.script.acts, self.state.seed ^ _DRAW_STREAM, self.turn * 64)
-        fixed = [choice for choice in node.choices if self.shown(choice)]
-        standing = [choice for choice in self.script.standing if node.standing and self.shown(choice)]
-        self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *fixed, *standing)]
-        return any(self.usable(choice) for choice, _ in self.offered)
+        others = (*node.choices, *self.script.standing) if node.standing else node.choices
+        self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *filter(self.shown, others))]
+        return bool(drawn) or any(self.usable(choice) for choice, _ in self.offered)
 
     def variant(self, choice: ChoiceDef) -> LineDef:
         """A wording not yet used in this talk, by chance; the first where all were."""
+        if len(choice.texts) == 1:
+            return choice.texts[0]
         fresh = [line for line in choice.texts if line.id not in self.said and self.holds(line)]
         if len(fresh) < 2:
             return fresh[0] if fresh else choice.texts[0]
@@ -387,24 +389,3 @@ class _Run:
         )
         choices = tuple(self._choice(choice, line) for choice, line in offered)
         return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended)
-
-
-def _environment(env: Mapping[str, Value]) -> dict[str, Value]:
-    """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
-    out: dict[str, Value] = {}
-    for name, known in ENV.items():
-        value = env.get(name, known.default)
-        try:
-            if known.type == "text":
-                if not isinstance(value, str):
-                    raise TypeError
-                out[name] = value
-            elif known.type == "bool":
-                out[name] = bool(value)
-            else:
-                out[name] = float(value)
-                if not math.isfinite(float(value)):
-                    raise TypeError
-        except (TypeError, ValueError):
-            raise BadInput(f"the name {name}", expected=f"a {known.type}", seen=value) from None
-    return out

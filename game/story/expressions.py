@@ -185,10 +185,7 @@ class _Compiler:
                 inner = self.wanted(operand, "number", depth)
                 return "number", lambda scope: -inner(scope)
             case ast.BoolOp(op=op, values=values):
-                parts = [self.wanted(value, "bool", depth) for value in values]
-                if isinstance(op, ast.And):
-                    return "bool", lambda scope: all(part(scope) for part in parts)
-                return "bool", lambda scope: any(part(scope) for part in parts)
+                return "bool", _joined(isinstance(op, ast.And), [self.wanted(v, "bool", depth) for v in values])
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _ARITHMETIC:
                 do = _ARITHMETIC[type(op)]
                 self.simple = False
@@ -271,7 +268,12 @@ class _Compiler:
             else:
                 raise self.fail("E_EXPR_FORBIDDEN", "`is` is not part of the language", left, "write ==")
             left = right
-        return "bool", lambda scope: all(test(a(scope), b(scope)) for test, a, b in tests)
+        if len(tests) > 1:
+            return "bool", _joined(True, [_test(*parts) for parts in tests])
+        name, constant = node.left, node.comparators[0]
+        if isinstance(name, ast.Name) and name.id not in _LITERALS and isinstance(constant, ast.Constant):
+            return "bool", _name_test(tests[0][0], name.id, tests[0][2](_NOTHING))
+        return "bool", _test(*tests[0])
 
     def note(self, side: ast.expr, other: ast.expr) -> None:
         """Remember what a name is compared with, for the search in the linter."""
@@ -285,6 +287,29 @@ class _Compiler:
             number = other.operand.value
             if isinstance(number, int | float):
                 values.add(-float(number))
+
+
+_NOTHING = Scope({}, {}, ())
+
+
+def _joined(every: bool, parts: list[Closure]) -> Closure:
+    """``and`` or ``or`` of two or more parts, left to right, as far as needed."""
+    if len(parts) > 2:
+        rest = _joined(every, parts[1:])
+        parts = [parts[0], rest]
+    first, second = parts
+    if every:
+        return lambda scope: first(scope) and second(scope)
+    return lambda scope: first(scope) or second(scope)
+
+
+def _test(test: Callable[[Any, Any], bool], a: Closure, b: Closure) -> Closure:
+    return lambda scope: test(a(scope), b(scope))
+
+
+def _name_test(test: Callable[[Any, Any], bool], name: str, constant: Value) -> Closure:
+    """The commonest condition by far, ``name == constant``, without further calls."""
+    return lambda scope: test(scope.names[name], constant)
 
 
 def _membership(

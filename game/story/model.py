@@ -37,7 +37,7 @@ Speaker = Literal["shopkeeper", "player", "narrator"]
 VariableScope = Literal["talk", "stall", "afternoon"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Item:
     """A thing on the table. ``list_price`` in whole units of the stall's currency."""
 
@@ -47,7 +47,7 @@ class Item:
     where: Where
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Person:
     """Who stands behind the stall; how they feel and bargain is told by the rules under ``temperament``."""
 
@@ -69,7 +69,7 @@ class Currency:
         return Text(self.pattern.en.replace("{n}", number), self.pattern.ja.replace("{n}", number))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Variable:
     """A variable with the scope it lives in; its type is that of its initial value."""
 
@@ -80,7 +80,7 @@ class Variable:
     where: Where
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EffectDef:
     """``set: {name: expression}``."""
 
@@ -89,7 +89,7 @@ class EffectDef:
     where: Where
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LineDef:
     """One spoken line.
 
@@ -110,7 +110,7 @@ class LineDef:
     feel: Mapping[str, float] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SayDef:
     """A place in a node where one line is said: the only one, or one of ``any`` that fits and was not yet said."""
 
@@ -120,7 +120,7 @@ class SayDef:
     when: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Branch:
     """Where to go on, if the condition holds; ``back`` returns to the caller, ``home`` is the stall's main hub."""
 
@@ -129,7 +129,7 @@ class Branch:
     condition: Expression | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChoiceDef:
     """What the player may say or do. Several ``texts`` are variants of it, none spoken twice in a talk.
 
@@ -151,7 +151,7 @@ class ChoiceDef:
     weight: float = 1.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NodeDef:
     """A place in the talk: lines, then choices to wait at, a way on, or an end."""
 
@@ -174,7 +174,7 @@ class NodeDef:
         return bool(self.choices or self.pools)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EndingDef:
     """How a talk can end: a name, and a caption for the outcome screen."""
 
@@ -183,7 +183,7 @@ class EndingDef:
     where: Where
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Script:
     """One stall's dialogue."""
 

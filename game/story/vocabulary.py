@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
+
+from game.core.errors import BadInput
 
 __all__ = [
     "ACTS",
@@ -18,6 +21,7 @@ __all__ = [
     "EnvName",
     "Type",
     "Value",
+    "environment",
 ]
 
 Value = float | bool | str
@@ -87,3 +91,31 @@ ENV: Mapping[str, EnvName] = MappingProxyType(
         ),
     }
 )
+
+
+def environment(env: Mapping[str, Value]) -> dict[str, Value]:
+    """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
+    out = dict(_DEFAULTS)
+    for name, value in env.items():
+        kind = _KINDS.get(name)
+        if kind is None:
+            continue
+        try:
+            if kind == "text":
+                if not isinstance(value, str):
+                    raise TypeError
+                out[name] = value
+            elif kind == "bool":
+                out[name] = bool(value)
+            else:
+                number = float(value)
+                if not math.isfinite(number):
+                    raise TypeError
+                out[name] = number
+        except (TypeError, ValueError):
+            raise BadInput(f"the name {name}", expected=f"a {kind}", seen=value) from None
+    return out
+
+
+_DEFAULTS: Mapping[str, Value] = {name: known.default for name, known in ENV.items()}
+_KINDS: Mapping[str, Type] = {name: known.type for name, known in ENV.items()}
