@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,8 @@ __all__ = ["StallSpec", "build_stall", "load_stall", "stall_parts"]
 
 _TOP = TABLE_TOP_M
 _HALF_WIDTH_M = 1.5
+
+Surface = tuple[Floats, Floats, Floats]
 
 
 @dataclass(frozen=True)
@@ -169,6 +172,10 @@ def _grain(x0: float, x1: float, z: float, y: float) -> Part:
     return Part("grain", "grain", mesh, None, 0.0)
 
 
+def _cloth(half: float, front: float, depth: float, height: float, u: Floats, v: Floats) -> Surface:
+    return half * (2 * u - 1), np.full_like(u, _TOP + height), front - depth * v
+
+
 def _runner() -> list[Part]:
     """The bargaining spot: a teal cloth with two cream borders and gold diamonds."""
     parts = []
@@ -179,16 +186,7 @@ def _runner() -> list[Part]:
         ("runner", 0.312, 0.748, 0.304, 0.0065, 0.0),
     )
     for material, half, front, depth, height, outline in layers:
-        cloth = sheet(
-            lambda u, v, half=half, front=front, depth=depth, height=height: (  # type: ignore[misc]
-                half * (2 * u - 1),
-                np.full_like(u, _TOP + height),
-                front - depth * v,
-            ),
-            12,
-            6,
-            (0, 1, 0),
-        )
+        cloth = sheet(partial(_cloth, half, front, depth, height), 12, 6, (0, 1, 0))
         parts.append(Part("runner", material, cloth, None, outline))
     for k in range(9):
         x = -0.26 + k * 0.065
@@ -213,6 +211,12 @@ def _tray() -> list[Part]:
     return parts
 
 
+def _valance(x0: float, u: Floats, v: Floats) -> Surface:
+    """One scallop of 15 cm along the table's front edge."""
+    y = _TOP + 0.004 - (0.045 + 0.060 * np.sin(np.pi * u) ** 0.7) * v
+    return x0 + 0.15 * u, y, 0.764 + 0.006 * np.sin(u * np.pi) + 0.002 * v
+
+
 def _frame_and_front() -> list[Part]:
     """Front rail, pleated skirt, scalloped valance, four posts."""
     parts = [Part("rail", "dark_wood", rounded_box((0, _TOP - 0.075, 0.725), (_HALF_WIDTH_M, 0.045, 0.018)), None)]
@@ -228,15 +232,7 @@ def _frame_and_front() -> list[Part]:
     parts.append(Part("skirt", "teal_cloth", skirt, None, 0.0))
     for k in range(20):
         x0 = -_HALF_WIDTH_M + k * 0.15
-        scallop = sheet(
-            lambda u, v, x0=x0: (  # type: ignore[misc]
-                x0 + 0.15 * u,
-                _TOP + 0.004 - (0.045 + 0.060 * np.sin(np.pi * u) ** 0.7) * v,
-                0.764 + 0.006 * np.sin(u * np.pi) + 0.002 * v,
-            ),
-            16,
-            6,
-        )
+        scallop = sheet(partial(_valance, x0), 16, 6)
         parts.append(Part("valance", "cream" if k % 2 else "red_cloth", scallop, None, 0.6))
     for side in (-1.0, 1.0):
         for z, height in ((0.70, 1.75), (-0.42, 1.90)):
@@ -252,6 +248,15 @@ def _flat_ends(post: Mesh) -> Mesh:
     return Mesh(post.position, np.where(length > 0.1, normal / np.maximum(length, 0.1), post.normal), post.triangle)
 
 
+def _roof(x0: float, width: float, u: Floats, v: Floats) -> Surface:
+    return x0 + width * u, 1.86 - 0.34 * v - 0.07 * v * (1 - v), -0.45 + 1.35 * v
+
+
+def _roof_edge(x0: float, width: float, u: Floats, v: Floats) -> Surface:
+    y = 1.525 - (0.055 + 0.050 * np.sin(np.pi * u) ** 0.6) * v
+    return x0 + width * u, y, 0.905 + 0.010 * np.sin(np.pi * u) + 0.006 * v
+
+
 def _awning() -> list[Part]:
     """Striped roof, sagging a little, with a scalloped edge toward the customer."""
     parts = []
@@ -259,25 +264,8 @@ def _awning() -> list[Part]:
     for k, (x0, x1) in enumerate(itertools.pairwise(edges)):
         material = "red_cloth" if k % 2 else "cream"
         width = x1 - x0
-        roof = sheet(
-            lambda u, v, x0=x0, width=width: (  # type: ignore[misc]
-                x0 + width * u,
-                1.86 - 0.34 * v - 0.07 * v * (1 - v),
-                -0.45 + 1.35 * v,
-            ),
-            4,
-            12,
-            (0, 1, 0),
-        )
-        edge = sheet(
-            lambda u, v, x0=x0, width=width: (  # type: ignore[misc]
-                x0 + width * u,
-                1.525 - (0.055 + 0.050 * np.sin(np.pi * u) ** 0.6) * v,
-                0.905 + 0.010 * np.sin(np.pi * u) + 0.006 * v,
-            ),
-            14,
-            6,
-        )
+        roof = sheet(partial(_roof, x0, width), 4, 12, (0, 1, 0))
+        edge = sheet(partial(_roof_edge, x0, width), 14, 6)
         parts += [Part("roof", material, roof, None, 0.0), Part("scallop", material, edge, None, 0.8)]
     return parts
 
