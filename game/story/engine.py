@@ -313,7 +313,7 @@ class _Run:
         return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone)
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
-        if "{" not in text.en and "{" not in text.ja:
+        if not text.names or text.names == {keep}:
             return text
 
         def value(name: str, language: str) -> str | None:
@@ -343,7 +343,17 @@ class _Run:
 
     def wait_at(self, node: NodeDef) -> bool:
         """Lay the choices of a node on the table; False where none can be taken."""
-        pool = [c for name in node.pools for c in self.script.pools[name] if self.usable(c)]
+        scope, chosen = self.scope, self.chosen
+        pool = [
+            choice
+            for name in node.pools
+            for choice in self.script.pools[name]
+            # What most choices need is asked first, and here: this is the talk's innermost loop.
+            if not (choice.once == "talk" and choice.id in chosen)
+            and (choice.condition is None or choice.condition.evaluate(scope))
+            and (choice.once != "stall" or self.shown(choice))
+            and (choice.needs is None or choice.needs.evaluate(scope))
+        ]
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
         drawn = draw_choices(pool, node.draw, self.script.acts, self.state.seed ^ _DRAW_STREAM, self.turn * 64)
@@ -372,8 +382,13 @@ class _Run:
 
     def result(self) -> tuple[StoryState, Beat]:
         offered = [] if self.ended is not None else self.offered
-        state = replace(
-            self.state,
+        before = self.state
+        state = StoryState(
+            stall=before.stall,
+            item=before.item,
+            seed=before.seed,
+            visit=before.visit,
+            earlier=before.earlier,
             started=True,
             counter=self.counter,
             turn=self.turn,

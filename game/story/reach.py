@@ -15,7 +15,7 @@ from game.story.vocabulary import ENV, Value
 __all__ = ["Condition", "Reach", "conditions_of"]
 
 _MAX_ASSIGNMENTS = 20_000
-_MAX_VALUES = 64
+_MAX_VALUES = 20
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from game.core.errors import BadInput
 
@@ -27,6 +28,11 @@ class Text:
 
     en: str
     ja: str
+
+    @cached_property
+    def names(self) -> frozenset[str]:
+        """What stands in braces in either language."""
+        return frozenset(name for words in (self.en, self.ja) for name, _ in slots(words))
 
     def get(self, language: str) -> str:
         """The words in ``en`` or ``ja``; English where the other is missing. Raises BadInput for another language."""

@@ -80,6 +80,7 @@ def test_tables_are_complete():
 
 def test_shell_examples_run(monkeypatch, capsys):
     monkeypatch.chdir(ROOT)
+    # All four name the shipped dialogue; what they print is tested with the linter.
     shell = re.findall(r"^run_game\.py ([^#\n]+)", DOC, re.M)
     assert len(shell) == 4
     for command in shell:

@@ -35,11 +35,8 @@ def test_each_fault_is_found_where_it_is(path):
     for finding in findings:
         assert "\n" not in str(finding)
         assert str(finding).startswith(f"{path}:{finding.where.line}:{finding.where.col}: {finding.code} ")
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_scripts_with_errors_do_not_load_and_others_do(path):
-    errors = [finding for finding in lint_files([path]) if finding.severity == "error"]
+    # A script with errors does not load, and says so at the first of them; one with warnings does.
+    errors = [finding for finding in findings if finding.severity == "error"]
     if not errors:
         assert load_script(path).stall == "tiny"
         return
