@@ -125,7 +125,7 @@ def vase() -> list[Part]:
     parts.append(_part("vase", "porcelain", rest))
     for k in range(7):
         angle, height = k * 2.4, 0.30 + 0.07 * np.sin(k * 3.1)
-        radius = 0.06 + 0.03 * np.cos(k * 1.7)
+        radius = 0.074 + 0.022 * np.cos(k * 1.7)
         tip = np.array([radius * np.cos(angle), height, radius * 0.8 * np.sin(angle)])
         mouth = np.array([0.0, 0.19, 0.0])
         stem = smooth_curve([mouth, (mouth + tip) / 2 + (0, 0.02, 0), tip], 10)
@@ -256,10 +256,10 @@ def lucky_cat() -> list[Part]:
         parts.append(_part("cheek", "pink", _solid(blush, low, high, 0.003, 220), 0.0))
         inner = intersection(
             0.003,
-            cone(at(k * 0.040, 0.182, 0.010), at(k * 0.050, 0.212, 0.006), 0.016 * s, 0.004 * s),
-            plane(at(0, 0, 0.012), (0, 0, -1)),
+            cone(at(k * 0.041, 0.186, 0.014), at(k * 0.050, 0.212, 0.008), 0.017 * s, 0.005 * s),
+            plane(at(0, 0, 0.006), (0, 0, -1)),
         )
-        inner = intersection(0.002, inner, offset(cat, 0.0018))
+        inner = intersection(0.002, inner, offset(cat, 0.0032))
         low, high = (k * 0.05 - 0.04, 0.17, -0.02), (k * 0.05 + 0.04, 0.27, 0.05)
         parts.append(_part("ear", "pink", _solid(inner, low, high, 0.003, 400), 0.0))
         for row in (0, 1):
