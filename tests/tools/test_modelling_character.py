@@ -15,7 +15,7 @@ from game.formats import GltfFile, Vrm, read_gltf, read_vrm
 from game.formats.vrm_model import REQUIRED_BONES
 from game.tools.modelling.character import Character
 from game.tools.modelling.export import LEVELS
-from game.tools.modelling.face_atlas import EXPRESSIONS
+from game.tools.modelling.face_atlas import COLUMNS, EXPRESSIONS, ROWS, cell_of
 from game.tools.modelling.parts import Detail
 from game.tools.modelling.spec import load_character
 
@@ -209,6 +209,22 @@ def test_the_builder_still_makes_the_committed_hair(vrm, character):
     for _, clump in character.hair.all_clumps(Detail(LEVELS[40000])):
         distance, _ = committed.query(clump.position)
         assert distance.max() < 1e-4
+
+
+def test_left_and_right_are_bound_alike(character):
+    """Mirrored points have mirrored weights, in the coat and in the legs."""
+    points = np.random.default_rng(3).uniform((0.02, 0.1, -0.1), (0.2, 0.95, 0.1), (300, 3))
+    columns = character.rig.mirrored_columns()
+    for bind in (character.binder.coat, character.binder.legs):
+        weights = bind(points)
+        np.testing.assert_allclose(weights.sum(1), 1.0)
+        np.testing.assert_allclose(bind(points * (-1, 1, 1)), weights[:, columns], atol=1e-9)
+
+
+def test_the_expression_atlas_gives_every_preset_a_cell_of_its_own():
+    cells = {cell_of(name) for name in EXPRESSIONS}
+    assert len(cells) == len(EXPRESSIONS) == 18
+    assert all(0 <= u <= 1 - 1 / COLUMNS + 1e-9 and 0 <= v <= 1 - 1 / ROWS + 1e-9 for u, v in cells)
 
 
 def test_bad_numbers_are_refused_with_their_place(tmp_path):

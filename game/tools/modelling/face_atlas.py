@@ -80,7 +80,7 @@ def _painted(canvas: Floats, position: Floats, colour: Floats, triangle: NDArray
         y = np.arange(y0, y1)[:, None] - corner[k, 0, 1]
         b = (x * edge[k, 1, 1] - y * edge[k, 1, 0]) / area[k]
         c = (y * edge[k, 0, 0] - x * edge[k, 0, 1]) / area[k]
-        # Half-open test: a pixel on a shared edge belongs to one of the two triangles.
+        # Pixel centres fall on an edge too rarely to need a fill rule.
         inside = (b >= 0) & (c > 0) & (b + c <= 1)
         if not inside.any():
             continue
