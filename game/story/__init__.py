@@ -1,7 +1,8 @@
 """Dialogue: scripts in YAML, their expression language, their checks, and the state of a talk."""
 
 from game.story.acts import ActTable, load_acts
-from game.story.engine import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, advance, resume
+from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus
+from game.story.engine import advance, resume
 from game.story.findings import CODES, Finding, Findings
 from game.story.lint import lint_files
 from game.story.model import Item, NodeDef, Person, Script

@@ -3,105 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from game.core.errors import BadInput
+from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus
 from game.story.chance import pick_weighted, uniform
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
-from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script, Speaker
+from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script
 from game.story.state import StoryState
 from game.story.text import Text, fill
 from game.story.vocabulary import ENV, OUTCOMES, Value, environment
 
-__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "advance", "resume"]
+__all__ = ["advance", "resume"]
 
 # A walk from one waiting place to the next passes far fewer nodes; the reader refuses scripts that could loop.
 _MAX_STEPS = 500
 _MAX_RETURNS = 16
 _DRAW_STREAM = 0x9E3779B9
-
-
-@dataclass(frozen=True)
-class Start:
-    """The player steps up to the stall."""
-
-
-@dataclass(frozen=True)
-class Chose:
-    """The player takes a choice of the last beat; ``outcome`` is what the market made of it, if anything."""
-
-    choice: str
-    outcome: str | None = None
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """Something happened that no choice caused."""
-
-    kind: str
-
-
-Event = Start | Chose | Outcome
-
-
-@dataclass(frozen=True)
-class Spoken:
-    """One line to speak, filled in, in both languages. ``face``: a named expression of ``Script.faces``."""
-
-    id: str
-    speaker: Speaker
-    en: str
-    ja: str
-    face: str | None = None
-    tone: str | None = None
-
-    def text(self, language: str) -> str:
-        """The words in ``en`` or ``ja``."""
-        return Text(self.en, self.ja).get(language)
-
-
-@dataclass(frozen=True)
-class Choice:
-    """A choice on the table, exactly as it will be said; ``{offer}`` is left for the amount on the dial."""
-
-    id: str
-    act: str
-    en: str
-    ja: str
-    available: bool
-    reason: Text | None
-    feel: Mapping[str, float]
-
-    def text(self, language: str) -> str:
-        """The words in ``en`` or ``ja``."""
-        return Text(self.en, self.ja).get(language)
-
-
-@dataclass(frozen=True)
-class Stimulus:
-    """``feel:`` of a node or line that was passed: signed changes per emotion (a choice's own stands in Choice)."""
-
-    feel: Mapping[str, float]
-    source: str
-
-
-@dataclass(frozen=True)
-class Beat:
-    """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
-
-    node: str
-    lines: tuple[Spoken, ...]
-    choices: tuple[Choice, ...]
-    stimuli: tuple[Stimulus, ...]
-    ended: str | None
-
-    def choice(self, choice_id: str) -> Choice:
-        """The offered choice with an id. Raises BadInput where it is not offered."""
-        for choice in self.choices:
-            if choice.id == choice_id:
-                return choice
-        raise BadInput("choice", expected=" | ".join(choice.id for choice in self.choices) or "none", seen=choice_id)
 
 
 def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:

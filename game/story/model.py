@@ -27,6 +27,7 @@ __all__ = [
     "Person",
     "SayDef",
     "Script",
+    "Speaker",
     "Variable",
 ]
 
