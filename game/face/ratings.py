@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
 
 from game.core import BadInput
 
@@ -70,6 +69,9 @@ def fit_weights(part_mean: ArrayLike, face_mean: ArrayLike, confidence: float = 
 
 
 def _fit_axis(x: Floats, y: Floats, confidence: float) -> AxisFit:
+    # Imported here: the game itself never fits ratings, and scipy.stats takes a third of its start.
+    from scipy import stats
+
     faces, regions = x.shape
     gram = x.T @ x
     if np.linalg.matrix_rank(x) < regions or np.linalg.cond(gram) > 1e12:
