@@ -226,7 +226,7 @@ def _largest(rows: Floats) -> Floats:
 
 def _until_stroke(bank: MotionBank, playback: Playback, owned: Bools) -> Floats:
     """(n, PARTS) the longest a transition may take where a gesture is on its way to its stroke."""
-    left = STROKE_SHARE * (playback.before_s - playback.elapsed_s)
+    left = STROKE_SHARE * playback.to_stroke_s
     bound = owned & (left > 0.0)[:, :, None]
     limit = np.where(bound, np.maximum(left, SHORTEST_S)[:, :, None], np.inf)
     return np.asarray(limit.min(axis=1), dtype=np.float32)

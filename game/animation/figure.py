@@ -12,6 +12,8 @@ from game.animation import bilinear as bl
 from game.core.humanoid import REFERENCE
 
 __all__ = [
+    "BONES",
+    "BONE_LENGTHS",
     "ENDS",
     "FEET_WORLD",
     "FIGURE",
@@ -46,6 +48,8 @@ _LOWER_NAMES = ("leftLowerArm", "rightLowerArm", "leftLowerLeg", "rightLowerLeg"
 _END_NAMES = ("leftHand", "rightHand", "leftFoot", "rightFoot")
 UPPER = np.array([WHERE[n] for n in _UPPER_NAMES])
 LOWER = np.array([WHERE[n] for n in _LOWER_NAMES])
+BONES = np.concatenate([UPPER, LOWER])
+"""(8,) upper bones, then lower bones of the two arms and two legs."""
 SHOULDERS = np.array([WHERE[n] for n in ("leftShoulder", "rightShoulder", "hips", "hips")])
 """Parents of the four upper bones."""
 ENDS = np.array([[REFERENCE.index[n] for n in names] for names in (_UPPER_NAMES, _LOWER_NAMES, _END_NAMES)])
@@ -55,6 +59,8 @@ HINGE = np.array([[0, 1, 0], [0, -1, 0], [-1, 0, 0], [-1, 0, 0]], dtype=np.float
 
 _OFFSET = REFERENCE.rest_translation[FIGURE].astype(np.float32)
 _END_OFFSET = REFERENCE.rest_translation[ENDS[2]].astype(np.float32)
+BONE_LENGTHS = np.linalg.norm(REFERENCE.rest_translation[ENDS[1:]], axis=-1)
+"""(2, 4) metres: upper and lower bones."""
 FEET_WORLD = REFERENCE.rest_model[ENDS[2, 2:], :3, 3].astype(np.float32)
 """(2, 3) where the ankles stand."""
 
@@ -69,7 +75,7 @@ def _plan() -> tuple[tuple[slice, NDArray[np.intp]], ...]:
 
 
 _PLAN = _plan()
-for _array in (FIGURE, UPPER, LOWER, SHOULDERS, ENDS, HINGE, _OFFSET, _END_OFFSET, FEET_WORLD):
+for _array in (FIGURE, BONES, BONE_LENGTHS, UPPER, LOWER, SHOULDERS, ENDS, HINGE, _OFFSET, _END_OFFSET, FEET_WORLD):
     _array.setflags(write=False)
 
 

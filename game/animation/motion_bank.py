@@ -13,6 +13,7 @@ from game.animation import rows as rw
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput
 from game.embos import MotionUnit, UnitLibrary, Variant
+from game.embos.mixing import RADIUS
 
 __all__ = ["FPS", "MotionBank", "bake"]
 
@@ -22,6 +23,7 @@ FPS = 30.0
 ADDITIVE_SHARE = 0.7
 """How much of a unit's torso and head movement shows where it does not own torso and head."""
 
+_ABSENT = -1e4
 _POSTURE_MIN_FRAMES = 8
 
 Ints = NDArray[np.int32]
@@ -39,7 +41,8 @@ class MotionBank:
     stroke; mannerisms have everything after. stroke: (U,) frame of the stroke. loop_first, loop_frames: (U,)
     stretch that repeats (0 frames: none). owned: (U, PARTS) bool. frame: (U, 2) index into CONTACT_FRAMES.
     contact: (U, 2) True where the unit declares a contact of that hand. looks: (U,) True where the unit moves
-    the gaze itself. intensity: (U, 7). neutral_posture: the unit shown when the body must say nothing.
+    the gaze itself. mix_slope, mix_level: (U, 7), eq. 5's exponent is
+    slope·i' + level. neutral_posture: the unit shown when the body must say nothing.
     """
 
     rows: Floats
@@ -55,7 +58,8 @@ class MotionBank:
     frame: NDArray[np.intp]
     contact: Bools
     looks: Bools
-    intensity: NDArray[np.float64]
+    mix_slope: Floats
+    mix_level: Floats
     neutral_posture: int
     rest: Ints
 
@@ -124,7 +128,8 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
         frame=frame,
         contact=contact,
         looks=np.array([bool({"gaze"} & (u.uses | u.locks)) for u in units]),
-        intensity=library.intensity.copy(),
+        mix_slope=(2.0 * library.intensity / RADIUS**2).astype(np.float32),
+        mix_level=np.where(count > 0, -((library.intensity / RADIUS) ** 2), _ABSENT).astype(np.float32),
         neutral_posture=_neutral_posture(library),
         rest=np.array([_rest(library, layer) for layer in layers], dtype=np.int32),
     )

@@ -41,11 +41,13 @@ _NEUTRAL.setflags(write=False)
 _ADDED = liveliness.additive_slice()
 _EYES = HEAD_CENTRE_OFFSET.astype(np.float32)
 _PALM_POINT = np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.0]], dtype=np.float32)
-_SOFT = np.array([True, True, False, False])
+_LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array([True, True, False, False]))
+_HINGE = figure.HINGE[..., None]
+_FLAT = np.eye(3, dtype=np.float32)
 _FRAMES = [figure.WHERE[name] for name in ch.CONTACT_FRAMES[1:]]
 _HEAD, _CHEST = figure.WHERE["head"], figure.WHERE["chest"]
 _ENDS = figure.ENDS.reshape(-1)
-for _array in (_ADDED, _EYES, _PALM_POINT, _SOFT):
+for _array in (_ADDED, _EYES, _PALM_POINT, _FLAT):
     _array.setflags(write=False)
 
 
@@ -107,7 +109,7 @@ class Performer:
         frames = np.zeros((n, len(ch.CONTACT_FRAMES), 4, 4), dtype=np.float32)
         frames[:] = np.eye(4, dtype=np.float32)
         return PerformerState(
-            playback=playback.start(self.bank, n, len(self.layers)),
+            playback=playback.start(n, len(self.layers)),
             blend=blending.start_blend(n, len(self.layers)),
             life=liveliness.start_life(n, seed, first),
             contact_frames=frames,
@@ -141,7 +143,7 @@ class Performer:
         self, state: PerformerState, decisions: Decisions, signal: PerformSignal, emotion: Floats, dt_s: float
     ) -> tuple[playback.Playback, blending.Blend]:
         """Clips run on, new units begin, all layers come together in one row."""
-        play = playback.advance_clock(state.playback, dt_s)
+        play = state.playback
         unit, weights = decisions.unit, decisions.emotion_weights
         held = self._held_by_mode[signal.mode]
         if held:
@@ -156,12 +158,10 @@ class Performer:
         for layer in held:
             fresh[:, layer] = changed[:, layer]
         if fresh.any():
-            play = playback.begin(
-                self.bank, play, fresh, unit, decisions.duration_s, weights, decisions.variant_pick, self._posture
-            )
-        drift_to = emotion if signal.mode in ("full", "body") else np.broadcast_to(_NEUTRAL, emotion.shape)
-        play = playback.refresh(self.bank, play, drift_to, self._posture, dt_s)
-        value, play, jumped = playback.sample(self.bank, play, self._posture)
+            seconds, pick = decisions.duration_s, decisions.variant_pick
+            play = playback.begin(self.bank, play, fresh, unit, seconds, weights, pick, self._posture, dt_s)
+        drift_to = _NEUTRAL[None] if held else signal.emotion
+        value, play, jumped = playback.advance_playback(self.bank, play, drift_to, self._posture, dt_s)
         blend = state.blend
         events = fresh | jumped
         if events.any():
@@ -240,25 +240,24 @@ class Performer:
     ) -> None:
         """Arms to their hands, legs to their feet: rewrites the twelve joints of the limbs in rotation."""
         n = len(rotation)
-        upper, lower = joints.take(figure.UPPER, axis=1), joints.take(figure.LOWER, axis=1)
-        target = np.empty((n, 4, 3), dtype=np.float32)
-        target[:, :2] = hand[:, :, :3, 3]
-        target[:, 2:] = figure.FEET_WORLD
-        hinge = (upper[..., :3, :3] @ figure.HINGE[..., None])[..., 0]
-        at_root, at_joint, _ = limbs.solve_limbs(upper[..., :3, 3], lower[..., :3, 3], ends, target, hinge, _SOFT)
-        # A rotation in model space becomes one before the local rotation, seen from the parent's frame.
-        parents = joints.take(figure.SHOULDERS, axis=1)
-        seen = np.empty((n, 8, 4), dtype=np.float32)
-        seen[:, :4, :3] = (parents[..., :3, :3].swapaxes(-1, -2) @ at_root[..., :3, None])[..., 0]
-        seen[:, 4:, :3] = (upper[..., :3, :3].swapaxes(-1, -2) @ at_joint[..., :3, None])[..., 0]
-        seen[:, :4, 3], seen[:, 4:, 3] = at_root[..., 3], at_joint[..., 3]
-        bones = _ENDS[:8]
-        rotation[:, bones] = bl.normalize(bl.multiply(seen, rotation.take(bones, axis=1)))
-        lower_now = bl.rotation_matrix(bl.multiply(at_root, at_joint)) @ lower[..., :3, :3]
-        wanted = np.zeros((n, 4, 3, 3), dtype=np.float32)
-        wanted[:, :2] = hand[:, :, :3, :3]
-        wanted[:, 2:] = np.eye(3, dtype=np.float32)
-        rotation[:, _ENDS[8:]] = bl.from_matrix(lower_now.swapaxes(-1, -2) @ wanted)
+        bones = joints.take(figure.BONES, axis=1)
+        turned = bones[..., :3, :3]
+        points = np.empty((n, 4, 4, 3), dtype=np.float32)
+        points[:, :2] = bones[..., :3, 3].reshape(n, 2, 4, 3)
+        points[:, 2] = ends
+        points[:, 3, :2] = hand[:, :, :3, 3]
+        points[:, 3, 2:] = figure.FEET_WORLD
+        hinge = (turned[:, :4] @ _HINGE)[..., 0]
+        fix = limbs.solve_limbs(_LIMBS, points, hinge)
+        # Model-space rotations of upper bones, lower bones and ends, then back to local ones.
+        model = np.empty((n, 12, 3, 3), dtype=np.float32)
+        np.matmul(bl.rotation_matrix(fix).reshape(n, 8, 3, 3), turned, out=model[:, :8])
+        model[:, 8:10] = hand[:, :, :3, :3]
+        model[:, 10:] = _FLAT
+        above = np.empty_like(model)
+        above[:, :4] = joints.take(figure.SHOULDERS, axis=1)[..., :3, :3]
+        above[:, 4:] = model[:, :8]
+        rotation[:, _ENDS] = bl.from_matrix(above.swapaxes(-1, -2) @ model)
 
     def _eyes(
         self, life: liveliness.Life, joints: Floats, signal: PerformSignal, dt_s: float
