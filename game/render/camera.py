@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import radians, tan
+from math import dist, radians, tan
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -57,6 +57,10 @@ class Camera:
         """Half the picture's height at distance 1; a picture narrower than 16:9 sees more above and below."""
         half = tan(radians(self.fov_deg) / 2.0)
         return half * max(1.0, DESIGN_ASPECT / aspect)
+
+    def distance_m(self, place: tuple[float, float, float]) -> float:
+        """From the eye to a place."""
+        return dist(self.eye, place)
 
     def view(self) -> Matrix:
         return look_at(self.eye, self.target)

@@ -30,7 +30,7 @@ LEVELS: tuple[Level, ...] = (
     Level("medium", 0, 25_000, 512, 1, 2, 512),
     Level("default", 0, 40_000, 768, 2, 2, 512),
     Level("high", 4, 25_000, 768, 2, 2, 512),
-    Level("ultra", 4, 40_000, 1024, 4, 1, 1024),
+    Level("ultra", 4, 40_000, 768, 2, 1, 1024),
 )
 DEFAULT = LEVELS[2]
 

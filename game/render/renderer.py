@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from game.face.mesh import DrawList
 from game.render.character_drawing import CharacterDrawing
 from game.render.device import Device, Owner
-from game.render.face_painter import FacePainter, hidden_face
+from game.render.face_painter import FACE_MM, FacePainter, hidden_face
 from game.render.hud import Hud
 from game.render.levels import DEFAULT, Level
 from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
@@ -20,6 +20,8 @@ from game.render.text import FontSet
 from game.render.view import FrameView
 
 __all__ = ["Renderer"]
+
+_FACE_AT = (0.0, 1.2, 0.1)  # about where the face is, m
 
 
 class Renderer(Owner):
@@ -91,7 +93,7 @@ class Renderer(Owner):
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
         if self._character is not None and self._painter is not None:
-            self._paint_face(view, self._painter)
+            self._paint_face(view, self._painter, targets.size)
             self._last_box = self._draw_character(view, self._character, self._painter, targets)
             changed = union(changed, self._last_box) if changed[2] else self._last_box
         self._show(view, targets, changed)
@@ -108,7 +110,9 @@ class Renderer(Owner):
             self._baked = None
         return targets
 
-    def _paint_face(self, view: FrameView, painter: FacePainter) -> None:
+    def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
+        tan_half = view.camera.tan_half_height(size[0] / size[1])
+        painter.fit(FACE_MM * 1e-3 / (2.0 * tan_half * view.camera.distance_m(_FACE_AT)) * size[1])
         if view.face is not None:
             self._face = view.face
         if not view.show_face:
