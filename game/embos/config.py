@@ -20,7 +20,8 @@ class PlannerConfig:
     layers: upper first. continuity_floor, transition_share: 0..1; sigma_rad > 0. minimum: layer -> φ_time while
     waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps
     going. spread: scales the takes' spread in the random factors. look_s: seconds between two looks at times and
-    emotion, 0: every tick. rest: layer -> φ_state of its rest unit. presence: 0..1, see scores.presence.
+    emotion, 0: every tick. settled: layers whose units are taken to have run before the first tick, so that not all
+    are free at once. rest: layer -> φ_state of its rest unit. presence: 0..1, see scores.presence.
     tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a
     word's moment stays open.
     """
@@ -33,9 +34,10 @@ class PlannerConfig:
         default_factory=lambda: {"posture": 0.02, "gesture": 0.0005, "mannerism": 0.0005}
     )
     steady: float = 0.5
-    least_s: Mapping[str, float] = field(default_factory=lambda: {"posture": 1.0, "gesture": 0.25, "mannerism": 0.25})
+    least_s: Mapping[str, float] = field(default_factory=lambda: {"posture": 1.0, "gesture": 0.5, "mannerism": 0.5})
     spread: float = 1.0
     look_s: float = 0.0
+    settled: tuple[str, ...] = ("mannerism",)
     rest: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LAYERS_WITH_REST, 0.02))
     presence: float = 1.0
     tolerance: float = 0.02
@@ -45,6 +47,8 @@ class PlannerConfig:
     def __post_init__(self) -> None:
         if sorted(self.layers) != sorted(LAYERS):
             raise BadInput("planner layers", expected=f"each of {', '.join(LAYERS)} once", seen=list(self.layers))
+        if not set(self.settled) <= set(LAYERS):
+            raise BadInput("planner settled", expected=f"some of {', '.join(LAYERS)}", seen=list(self.settled))
         for name, low, high in (
             ("continuity_floor", 0.0, 1.0),
             ("transition_share", 0.0, 1.0),
@@ -65,7 +69,7 @@ class PlannerConfig:
 def load_config(path: Path) -> PlannerConfig:
     """Read planner.yaml; a missing key keeps its default. Raises BadInput with file:line:col."""
     root = load_yaml(path).only("layers", "continuity", "time", "state", "mixing", "words")
-    values: dict[str, object] = {}
+    values: dict[str, object] = {name: name for name in ("minimum", "steady", "least_s", "spread", "look_s", "settled")}
     layers = root.get("layers")
     if layers:
         values["layers"] = tuple(item.as_str() for item in layers)
@@ -73,7 +77,14 @@ def load_config(path: Path) -> PlannerConfig:
         ("continuity", {"floor": "continuity_floor", "transition_share": "transition_share", "sigma_rad": "sigma_rad"}),
         (
             "time",
-            {"minimum": "minimum", "steady": "steady", "least_s": "least_s", "spread": "spread", "look_s": "look_s"},
+            {
+                "minimum": "minimum",
+                "steady": "steady",
+                "least_s": "least_s",
+                "spread": "spread",
+                "look_s": "look_s",
+                "settled": "settled",
+            },
         ),
         ("state", {"rest": "rest", "presence": "presence", "tolerance": "tolerance"}),
         ("mixing", {"radius": "radius"}),
@@ -84,6 +95,8 @@ def load_config(path: Path) -> PlannerConfig:
             name = names[key.as_str()]
             if name in ("least_s", "minimum"):
                 values[name] = _per_layer(value, LAYERS, 0.0, 60.0 if name == "least_s" else 1.0)
+            elif name == "settled":
+                values[name] = tuple(item.as_str() for item in value)
             elif name == "rest":
                 values[name] = _per_layer(value, LAYERS_WITH_REST, 1e-6, 1.0)
             else:

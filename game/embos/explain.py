@@ -44,7 +44,7 @@ def explain(
     """
     t = planner.tables
     rows = np.array([character])
-    state = planner.with_emotion(state, signal.emotion)
+    state = planner.prepared(state, signal)
     factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s))
     result: list[list[Candidate]] = []
     for at, layer in enumerate(t.layers):

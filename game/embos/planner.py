@@ -26,6 +26,7 @@ __all__ = ["Planner"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
 
 
 class Planner:
@@ -83,11 +84,11 @@ class Planner:
         all_begun = state.soonest_s > -np.inf
         if not new_words and not moving and all_begun and (not looking or now <= state.soonest_s):
             return _standing(state)
-        due = state.next_s < now if looking else np.isneginf(state.next_s)  # −inf: has not begun yet
-        moved = moved_by.max(axis=1) > self.config.tolerance if looking else due
-        if np.count_nonzero(moved):
-            due = due | moved
-            state = self._feel(state, emotion, moved.nonzero()[0])
+        fresh = (state.starts == 0).all(axis=1)  # a posture starts in everyone's first tick
+        due = state.next_s < now if looking else fresh
+        moved = moved_by.max(axis=1) > self.config.tolerance if looking else fresh
+        due = due | moved
+        state = self._settle(self._feel(state, emotion, moved), fresh, signal.time_s)
         if new_words:
             due = due | said_anew.any(axis=1)
             state = state.renewed(words=words.copy())
@@ -114,17 +115,35 @@ class Planner:
         """Why: per layer all candidates with their factors and a reason, the chosen one first (see explain.py)."""
         return explain(self, state, signal, character, dt_s)
 
-    def with_emotion(self, state: PlannerState, emotion: Floats) -> PlannerState:
-        """The state after taking note of an emotion (n, 7), as advance would before deciding."""
-        moved = np.abs(emotion - state.emotion).max(axis=1) > self.config.tolerance
-        return self._feel(state, emotion, np.flatnonzero(moved)) if moved.any() else state
+    def prepared(self, state: PlannerState, signal: PlannerSignal) -> PlannerState:
+        """The state as eq. 1 finds it in this tick: the emotion noted, whoever begins settled."""
+        moved = np.abs(signal.emotion - state.emotion).max(axis=1) > self.config.tolerance
+        fresh = (state.starts == 0).all(axis=1)
+        return self._settle(self._feel(state, signal.emotion, moved), fresh, signal.time_s)
 
-    def _feel(self, state: PlannerState, emotion: Floats, rows: Ints) -> PlannerState:
-        """φ_state anew for the characters whose emotion has moved."""
+    def _feel(self, state: PlannerState, emotion: Floats, moved: Bools) -> PlannerState:
+        """φ_state anew for the characters whose emotion has moved, (n,) bool."""
+        rows = moved.nonzero()[0]
+        if rows.size == 0:
+            return state
         felt, phi = state.emotion.copy(), state.phi_state.copy()
         felt[rows] = emotion[rows]
         phi[rows] = self.tables.phi_state(felt[rows])
         return state.renewed(emotion=felt, phi_state=phi)
+
+    def _settle(self, state: PlannerState, fresh: Bools, time_s: float) -> PlannerState:
+        """Some way through its waiting time, for each unit of the settled layers of characters about to begin."""
+        t, slots, rows = self.tables, self.tables.settled, fresh.nonzero()[0]
+        if slots.size == 0 or rows.size == 0:
+            return state
+        weights = mix_weights(state.emotion[rows, None], t.intensity[slots], t.exists[slots], self.config.radius)
+        period_s = mix(t.timing_s[slots, 0] + t.timing_s[slots, 1], weights)
+        who, which = np.indices((len(rows), len(slots))).reshape(2, -1)
+        before = np.full(who.size, -1, dtype=np.int64)  # an event of its own, before the first start
+        chance = uniform(state.key[rows[who]], slots[which], before, 1)
+        wait_s = state.wait_s.copy()
+        wait_s[np.ix_(rows, slots)] = time_s + chance.reshape(period_s.shape) * period_s
+        return state.renewed(wait_s=wait_s)
 
     def evaluate(self, state: PlannerState, rows: Ints, words: Floats, now: float) -> Factors:
         """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
@@ -215,7 +234,7 @@ class Planner:
         layer: Ints,
         slot: Ints,
         changed: NDArray[Any],
-        flags: NDArray[np.bool_],
+        flags: Bools,
         time_s: float,
         now: float,
     ) -> tuple[PlannerState, Floats]:

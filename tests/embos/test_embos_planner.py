@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from game.core import BadInput, with_neutral
-from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary
+from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary, scores
 
 DT = 1.0 / 30.0
 JOY = np.eye(7)[2:3]
@@ -25,6 +25,7 @@ def unit(name: str, layer: str, joy: float = 1.0, *, length: float = 2.0, wait: 
 def small(*extra: MotionUnit, **config: Any) -> Planner:
     units = [unit("upright", "posture", 0.9, length=5, wait=0), unit("g", "gesture"), unit("m", "mannerism")]
     named = {u.name for u in extra}
+    config = {"settled": ()} | config
     return Planner(UnitLibrary([u for u in units if u.name not in named] + list(extra)), PlannerConfig(**config))
 
 
@@ -144,6 +145,18 @@ def test_rest_fills_the_waiting_time() -> None:
     assert starts == pytest.approx([0.0, 6.0], abs=0.05)
 
 
+def test_mannerisms_do_not_all_come_at_the_start() -> None:
+    planner = small(unit("m", "mannerism", length=2.0, wait=8.0), settled=("mannerism",))
+    n = 400
+    state, first_s = planner.start(n, 1), np.full(400, np.inf)
+    emotion, words = np.repeat(JOY, n, 0), np.zeros((n, 1))
+    for tick in range(110):
+        state, d = planner.advance(state, PlannerSignal(emotion, words, tick * 0.1), 0.1)
+        first_s = np.where(np.isinf(first_s) & (d.duration_s[:, 2] > 0), tick * 0.1, first_s)
+    assert first_s.mean() == pytest.approx(5.0, abs=0.4)
+    assert first_s.max() <= 10.2
+
+
 def test_looking_ten_times_a_second_keeps_lengths_and_hears_words_at_once() -> None:
     names = [names[2] for _, names, _ in play(small(look_s=0.1), 6.5)]
     changes = [i * DT for i in range(1, len(names)) if names[i] != names[i - 1]]
@@ -261,3 +274,36 @@ def test_a_signal_of_the_wrong_shape_is_refused() -> None:
     planner = small()
     with pytest.raises(BadInput, match="expected emotion"):
         planner.advance(planner.start(2, 1), PlannerSignal(JOY, np.zeros((1, 1)), 0.0))
+
+
+def test_the_planners_phi_state_is_the_formula_layer_by_layer(made_up: Callable[..., Any]) -> None:
+    library = made_up(7).library
+    planner, rng = Planner(library), np.random.default_rng(2)
+    emotion = np.concatenate([with_neutral(rng.random((60, 6)) ** 2), with_neutral(np.eye(6)), np.eye(7)[6:]])
+    fast = planner.tables.phi_state(emotion)
+    for layer in LAYERS:
+        own = [i for i in library.of_layer(layer) if not library.is_rest[i]]
+        wanted = scores.phi_state(emotion, library.intensity[own]) * scores.presence(emotion, library.exists[own])
+        slots = [planner.tables.slot_of(i) for i in own]
+        np.testing.assert_allclose(fast[:, slots], wanted, rtol=1e-9, atol=1e-12)
+
+
+def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> None:
+    library = made_up(8).library
+    planner = Planner(library, PlannerConfig(settled=(), minimum=dict.fromkeys(LAYERS, 0.02)))
+    state, words = planner.start(7, 3), np.ones((7, len(library.gestures)))
+    rows, started = np.arange(7), np.full((7, planner.tables.slots), -np.inf)
+    lengths, waits = np.zeros_like(started), np.zeros_like(started)
+    for tick in range(600):
+        signal = PlannerSignal(np.eye(7), words, tick * DT)
+        now = planner.moment(signal.time_s, DT)
+        prepared = planner.prepared(state, signal)
+        time = planner.evaluate(prepared, rows, words, now).time.reshape(7, -1)
+        used = planner.tables.unit >= 0
+        wanted = scores.phi_time(now, started, lengths, waits)
+        np.testing.assert_array_equal(time[:, used], wanted[:, used])
+        state, d = planner.advance(state, signal)
+        who, layer = np.nonzero(d.started & (d.duration_s > 0.0))
+        slot = state.running[who, layer]
+        started[who, slot], lengths[who, slot] = signal.time_s, d.duration_s[who, layer]
+        waits[who, slot] = state.wait_s[who, slot] - signal.time_s - d.duration_s[who, layer]
