@@ -52,14 +52,13 @@ _ARMS = (ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm"))
 @dataclass(frozen=True, eq=False)
 class Blend:
     """n characters. gate: (n, L, CHANNELS) share of each layer. owned: (n, L, PARTS) what each layer's unit owns.
-    frame: (n, 2) contact frame of the hands, contact: (n, 2) whether it is declared. offset, offset_speed:
+    frame: (n, 2) contact frame of the hands. offset, offset_speed:
     (n, CHANNELS) at the last switch, the latter times brake_s. age_s, span_s, brake_s: (n, PARTS). row, speed:
     (n, CHANNELS) shown at the last tick. known: (n,) False before the first tick."""
 
     gate: Floats
     owned: Bools
     frame: NDArray[np.intp]
-    contact: Floats
     offset: Floats
     offset_speed: Floats
     age_s: Floats
@@ -78,7 +77,6 @@ def start_blend(n: int, layers: int) -> Blend:
         gate=np.zeros((n, layers, ch.CHANNELS), dtype=np.float32),
         owned=np.zeros((n, layers, parts), dtype=bool),
         frame=np.zeros((n, 2), dtype=np.intp),
-        contact=np.zeros((n, 2), dtype=np.float32),
         offset=zero,
         offset_speed=zero,
         age_s=np.ones((n, parts), dtype=np.float32),
@@ -113,7 +111,7 @@ def switch(
     owned = bank.owned[playback.unit] & playback.active[:, :, None]
     touched = owned | state.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
     changed = (touched & events[:, :, None]).any(axis=1)
-    gate, frame, contact = _gates(bank, playback, owned, posture_layer)
+    gate, frame = _gates(bank, playback, owned, posture_layer)
     goal, goal_speed = compose(value, gate)
     row, speed = _in_frames(state, frame, contact_frames)
     row = row + speed * np.float32(dt_s)
@@ -130,7 +128,6 @@ def switch(
         gate=gate,
         owned=owned,
         frame=frame,
-        contact=contact,
         offset=np.where(per_channel, offset, state.offset),
         offset_speed=np.where(per_channel, offset_speed * brake_of_channel, state.offset_speed),
         age_s=np.where(fresh, np.float32(0.0), state.age_s),
@@ -154,10 +151,8 @@ def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
     return replace(state, row=row, speed=speed, age_s=state.age_s + np.float32(dt_s), known=np.ones_like(state.known))
 
 
-def _gates(
-    bank: MotionBank, playback: Playback, owned: Bools, posture_layer: int
-) -> tuple[Floats, NDArray[np.intp], Floats]:
-    """Layer shares per channel, contact frames of the hands and whether they are declared contacts."""
+def _gates(bank: MotionBank, playback: Playback, owned: Bools, posture_layer: int) -> tuple[Floats, NDArray[np.intp]]:
+    """Layer shares per channel and contact frames of the hands."""
     n, layers, parts = owned.shape
     free = np.ones((n, parts), dtype=bool)
     gate = np.zeros((n, layers, parts), dtype=np.float32)
@@ -167,8 +162,7 @@ def _gates(
         taken = free & owned[:, layer]
         unit = np.where(taken[:, _ARMS], playback.unit[:, layer, None], unit)
         free = free & ~taken
-    hand = np.arange(2)
-    return gate[:, :, ch.PART_OF_CHANNEL], bank.frame[unit, hand], bank.contact[unit, hand].astype(np.float32)
+    return gate[:, :, ch.PART_OF_CHANNEL], bank.frame[unit, np.arange(2)]
 
 
 def _in_frames(state: Blend, frame: NDArray[np.intp], contact_frames: Floats) -> tuple[Floats, Floats]:

@@ -41,36 +41,64 @@ SOFTNESS_M = 0.006
 DEEPEST_M = 0.12
 """Points further inside than this came from below the table: they are left to the clip."""
 
-BODY_JOINTS = tuple(dict.fromkeys(joint for joint, _, _ in BODY))
-_OWNER = np.array([BODY_JOINTS.index(joint) for joint, _, _ in BODY])
-_CENTRE = np.array([np.subtract(c, _REST[j]) for j, c, _ in BODY], dtype=np.float32)
+BODY_JOINTS = tuple(joint for joint, _, _ in BODY)
 _INVERSE = np.array([np.divide(1.0, r) for _, _, r in BODY], dtype=np.float32)
-for _array in (POINT_RADII, TOLERANCE_M, _OWNER, _CENTRE, _INVERSE):
+_SQUARED_INVERSE = (_INVERSE * _INVERSE)[:, None]
+_MIDDLE = np.array([np.subtract(_REST[j], c) / r for j, c, r in BODY], dtype=np.float32)[..., None]
+_REACH = np.tile(POINT_RADII - TOLERANCE_M, 2)
+_TALLEST = float(POINT_RADII.max()) + TABLE_CLEARANCE_M
+for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SQUARED_INVERSE, _MIDDLE, _REACH):
     _array.setflags(write=False)
 
 
-def body_frames(joints: dict[str, Floats]) -> Floats:
-    """(n, 4, 4) matrices of chest, spine, hips and head -> (n, 6, 3, 4) maps into each ellipsoid's unit sphere."""
-    frames = np.stack([joints[name] for name in BODY_JOINTS], axis=1)[:, _OWNER]
+def body_frames(frames: Floats) -> Floats:
+    """(n, 6, 4, 4) matrices of the joints BODY hangs on -> (n, 6, 3, 4) maps into each ellipsoid's unit sphere."""
     maps = np.empty((len(frames), len(BODY), 3, 4), dtype=np.float32)
-    turn = frames[..., :3, :3].swapaxes(-1, -2)
-    maps[..., :3] = turn
-    maps[..., 3] = -(turn @ frames[..., :3, 3:])[..., 0] - _CENTRE
-    maps *= _INVERSE[:, :, None]
+    turn = np.multiply(frames[..., :3, :3].swapaxes(-1, -2), _INVERSE[:, :, None], out=maps[..., :3])
+    np.subtract(_MIDDLE, turn @ frames[..., :3, 3:], out=maps[..., 3:])
     return maps
 
 
 def body_distance(maps: Floats, points: Floats) -> tuple[Floats, Floats]:
     """Signed distance (n, 6, P) of points (n, P, 3) from each ellipsoid, metres, and its unit gradient (n, 6, 3, P)."""
+    at, distance, slope = _distance(maps, points)
+    return distance, _away(maps, at, slope)
+
+
+def _distance(maps: Floats, points: Floats) -> tuple[Floats, Floats, Floats]:
+    """Points in the unit spheres' frames (n, 6, 3, P), distance and slope (n, 6, P)."""
     at = maps[..., :3] @ points.swapaxes(-1, -2)[:, None] + maps[..., 3:]
-    squeezed = at * _INVERSE[:, :, None]
-    norm = np.sqrt((at * at).sum(axis=2) + np.float32(1e-12))
-    slope = np.sqrt((squeezed * squeezed).sum(axis=2) + np.float32(1e-12))
+    square = at * at
+    norm = np.sqrt(square.sum(axis=2) + np.float32(1e-12))
+    slope = np.sqrt((_SQUARED_INVERSE @ square)[:, :, 0] + np.float32(1e-12))
     # Quílez' estimate for an ellipsoid; exact on the surface.
-    distance = norm * (norm - 1.0) / slope
-    away = squeezed / slope[:, :, None]
-    turn = (maps[..., :3] / _INVERSE[:, :, None]).swapaxes(-1, -2)
-    return distance, turn @ away
+    return at, norm * (norm - np.float32(1.0)) / slope, slope
+
+
+def _away(maps: Floats, at: Floats, slope: Floats) -> Floats:
+    # maps hold rotation / radius, so their transpose takes position / radius to the gradient in model space.
+    return np.asarray(maps[..., :3].swapaxes(-1, -2) @ (at / slope[:, :, None]))
+
+
+def push_out(maps: Floats, points: Floats) -> Floats:
+    """points: (n, 2, 7, 3) of both hands in model space -> push (n, 2, 3), metres; 0 where all is clear."""
+    n = len(points)
+    push = np.zeros((n, 2, 3), dtype=np.float32)
+    at, distance, slope = _distance(maps, points.reshape(n, 14, 3))
+    depth = _REACH - distance
+    if depth.max() > -SOFTNESS_M:
+        depth = _soft(depth)
+        away = _away(maps, at, slope)
+        cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
+        # The deepest contact leads, others join in as they come near: no switching.
+        weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
+        amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
+        push += amount.sum(axis=(1, 4)).swapaxes(-1, -2)
+    if ((points[..., 1] < TABLE_TOP_M + _TALLEST) & (points[..., 2] > TABLE_BACK_Z_M - _TALLEST)).any():
+        up, back = _table(points)
+        push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
+        push[..., 2] -= back
+    return push
 
 
 def _soft(depth: Floats) -> Floats:
@@ -78,23 +106,6 @@ def _soft(depth: Floats) -> Floats:
     s = np.float32(SOFTNESS_M)
     ramp = np.clip(depth + s, 0.0, 2.0 * s)
     return np.asarray(ramp * ramp / (4.0 * s) + np.maximum(depth - s, 0.0))
-
-
-def push_out(maps: Floats, points: Floats) -> Floats:
-    """points: (n, 2, 7, 3) of both hands in model space -> push (n, 2, 3), metres; 0 where all is clear."""
-    n = len(points)
-    distance, away = body_distance(maps, points.reshape(n, 14, 3))
-    radius = np.concatenate([POINT_RADII, POINT_RADII])
-    depth = _soft((radius - np.concatenate([TOLERANCE_M, TOLERANCE_M])) - distance)
-    cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
-    # The deepest contact leads, others join in as they come near: no switching.
-    weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
-    amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
-    push = amount.sum(axis=(1, 4)).swapaxes(-1, -2)
-    up, back = _table(points)
-    push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
-    push[..., 2] -= back
-    return np.asarray(push)
 
 
 def _table(points: Floats) -> tuple[Floats, Floats]:

@@ -6,24 +6,28 @@ same alone and in a crowd, at 30 or at 60 ticks a second.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import channels as ch
-from game.core.springs import critical_spring, damper_fraction
+from game.core.springs import half_life_to_damping
 from game.embos.draws import character_keys, uniform
 
 __all__ = [
     "GAZE_AWAY",
     "GAZE_CUSTOMER",
     "GAZE_GOODS",
+    "Gaze",
     "Life",
     "LifeConfig",
+    "additive_slice",
     "advance_life",
     "look",
+    "start_gaze",
     "start_life",
 ]
 
@@ -70,10 +74,41 @@ class LifeConfig:
     eye_pitch_rad: float = 0.42
     blink_s: float = 0.2
     nod_rad: float = 0.022
+    mood_half_life_s: float = 0.14
+
+    @cached_property
+    def per_second(self) -> Floats:
+        """(7, 5) how fast Life.timers run in each emotion."""
+        still = np.ones(7)
+        return np.stack([self.sway_pace, self.breath_per_min / 60.0, -still, -still, still], axis=1)
+
+    @cached_property
+    def amounts(self) -> Floats:
+        """(7, 3) breath and sway that are added, and the tempo."""
+        return np.stack([self.breath_depth * self.breath_share, self.sway * self.sway_share, self.tempo], axis=1)
+
+    @cached_property
+    def eye_scale(self) -> Floats:
+        """(2,) look per radian."""
+        return np.array([1.0 / self.eye_yaw_rad, 1.0 / self.eye_pitch_rad])
+
+    @cached_property
+    def head_shares(self) -> Floats:
+        """(3,) how much of the target's yaw and pitch the head takes, and of its yaw the torso."""
+        return np.array([self.head_share, -self.head_share, self.torso_share])
+
+    @cached_property
+    def head_stiffness(self) -> Floats:
+        """(3,) per second: half the damping of critical springs with the half-lives (game.core.springs)."""
+        half_lives = np.array([self.head_half_life_s, self.head_half_life_s, self.torso_half_life_s])
+        return np.asarray(half_life_to_damping(half_lives) / 2.0)
 
 
-# Cues in the order of the columns below -> small rotations of ADDITIVE_JOINTS (degrees per unit) and root metres.
-_CUES = ("breath", "right", "forward", "twist", "side", "yaw", "roll", "gaze_yaw", "gaze_pitch", "torso_yaw", "nod")
+_SWAYS = ("right", "forward", "twist", "side", "yaw", "roll")
+_CUES = ("breath", *(f"{name}{k}" for name in _SWAYS for k in (0, 1)), "gaze_yaw", "gaze_pitch", "torso_yaw", "nod")
+"""What moves the torso and head: sways are two sines each."""
+_SWAY_HZ = np.array([0.11, 0.27, 0.13, 0.31, 0.17, 0.23, 0.09, 0.29, 0.15, 0.37, 0.12, 0.33])
+_SWAY_WEIGHT = (0.8, 0.6)
 _EFFECT_DEG: dict[str, dict[str, tuple[float, float, float]]] = {
     "breath": {
         "spine": (-1.1, 0, 0),
@@ -88,6 +123,7 @@ _EFFECT_DEG: dict[str, dict[str, tuple[float, float, float]]] = {
     "yaw": {"neck": (0, 0.9, 0), "head": (0, 1.3, 0)},
     "roll": {"neck": (0, 0, 0.6), "head": (0, 0, 1.0)},
 }
+"""Degrees of a full breath and of a sway of 1."""
 _EFFECT_RAD: dict[str, dict[str, tuple[float, float, float]]] = {
     "gaze_yaw": {"neck": (0, 0.42, 0), "head": (0, 0.58, 0)},
     "gaze_pitch": {"neck": (0.42, 0, 0), "head": (0.58, 0, 0)},
@@ -95,55 +131,66 @@ _EFFECT_RAD: dict[str, dict[str, tuple[float, float, float]]] = {
     "nod": {"neck": (0.4, 0, 0), "head": (0.6, 0, 0)},
 }
 _EFFECT_M = {"right": (0.006, 0, 0), "forward": (0, 0, 0.004)}
+_ADDITIVE_NAMES = ("hips", "spine", "chest", "neck", "head", "leftShoulder", "rightShoulder")
 
 
 def _effect_table() -> Floats:
-    """(cues, 7·3 + 3): cue -> half angles of the additive joints, then the root's shift."""
-    names = ("hips", "spine", "chest", "neck", "head", "leftShoulder", "rightShoulder")
-    table = np.zeros((len(_CUES), 3 * len(names) + 3), dtype=np.float32)
-    for effects, scale in ((_EFFECT_DEG, np.pi / 360.0), (_EFFECT_RAD, 0.5)):
-        for cue, joints in effects.items():
-            for joint, angles in joints.items():
-                at = 3 * names.index(joint)
-                table[_CUES.index(cue), at : at + 3] = np.multiply(angles, scale)
-    for cue, shift in _EFFECT_M.items():
-        table[_CUES.index(cue), -3:] = shift
-    table.setflags(write=False)
+    """(cues, 7·3 + 3): cue -> half angles of ADDITIVE_JOINTS, then the root's shift."""
+    table = np.zeros((len(_CUES), 3 * len(_ADDITIVE_NAMES) + 3))
+    for row, cue in enumerate(_CUES):
+        name, weight = (cue[:-1], _SWAY_WEIGHT[int(cue[-1])]) if cue[-1].isdigit() else (cue, 1.0)
+        for effects, scale in ((_EFFECT_DEG, np.pi / 360.0), (_EFFECT_RAD, 0.5)):
+            for joint, angles in effects.get(name, {}).items():
+                at = 3 * _ADDITIVE_NAMES.index(joint)
+                table[row, at : at + 3] = np.multiply(angles, scale * weight)
+        table[row, -3:] = np.multiply(_EFFECT_M.get(name, (0.0, 0.0, 0.0)), weight)
     return table
 
 
 _EFFECT = _effect_table()
-_SWAYS = 6
-_SWAY_HZ = np.array([[0.11, 0.27], [0.13, 0.31], [0.17, 0.23], [0.09, 0.29], [0.15, 0.37], [0.12, 0.33]])
-_SWAY_WEIGHT = np.array([0.8, 0.6])
+_SWAY_RATE = 2.0 * np.pi * _SWAY_HZ
+# In for 42 % of the cycle, out a little slower, then a pause: as the takes breathe.
+_BREATH_AT = np.linspace(0.0, 1.0, 65)
+_BREATH = np.where(
+    _BREATH_AT < 0.42,
+    0.5 - 0.5 * np.cos(np.pi * _BREATH_AT / 0.42),
+    0.5 + 0.5 * np.cos(np.pi * np.minimum((_BREATH_AT - 0.42) / 0.464, 1.0)),
+)
 _BLINK_AT = np.array([0.0, 0.3, 0.45, 1.0])
 _BLINK_SHUT = np.array([0.0, 1.0, 1.0, 0.0])
-for _table in (_EFFECT, _SWAY_HZ, _SWAY_WEIGHT, _BLINK_AT, _BLINK_SHUT):
+_HEAD_CUES = np.array([0, 1, 0])
+_CLOCK, _BREATHS, _DART_LEFT, _BLINK_LEFT, _BLINK_AGE = range(5)
+_NOD_WAVE = 2 * _SWAYS.index("yaw") + 1
+_SHIFT = 0.55
+"""A jump of the eyes beyond this brings a blink with it."""
+for _table in (_EFFECT, _SWAY_HZ, _SWAY_RATE, _BREATH_AT, _BREATH, _BLINK_AT, _BLINK_SHUT, _HEAD_CUES):
     _table.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
 class Life:
-    """n characters. key: seeds of their draws. phase: (n, 6, 2) of the sways. clock: sway time. breath: phase in
-    breaths. dart: (n, 2) of the eyes; eye: (n, 2). *_left_s, *_count: time to and number of the next dart and blink.
-    head: (n, 3) yaw and pitch added to the head, yaw added to the torso, radians; head_speed: per second.
-    attention: 1 looks at the target, 0 where the unit's own gaze leads. voice: (n,) smoothed speaking."""
+    """n characters. key: seeds of their draws; counts: (n, 2) darts and blinks drawn. phase: (n, 12) of the sways.
+    timers: (n, 5) sway time, breaths, seconds to the next dart and blink, since the last blink. dart: (n, 2) of the
+    eyes. head: (n, 2, 3) yaw and pitch added to the head, yaw added to the torso, radians, and their speeds. mood:
+    (n, 2) attention (1 looks at the target, 0 where the unit's own gaze leads) and voice, both smoothed."""
 
     key: NDArray[np.uint64]
+    counts: NDArray[np.int64]
     phase: Floats
-    clock: Floats
-    breath: Floats
+    timers: Floats
     dart: Floats
-    dart_left_s: Floats
-    dart_count: NDArray[np.int64]
-    blink_left_s: Floats
-    blink_count: NDArray[np.int64]
-    blink_age_s: Floats
-    eye: Floats
     head: Floats
-    head_speed: Floats
-    attention: Floats
-    voice: Floats
+    mood: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Gaze:
+    """eye: (n, 2) in [-1, 1]; aim: (n, 2) yaw and pitch of the target in model space, radians; leap: (n,) True where
+    the eyes have just been sent far."""
+
+    eye: Floats
+    aim: Floats
+    leap: NDArray[np.bool_]
 
 
 def start_life(n: int, seed: int, first: int = 0) -> Life:
@@ -151,137 +198,104 @@ def start_life(n: int, seed: int, first: int = 0) -> Life:
     key = character_keys(seed ^ 0x11FE, first, n)
     zero = np.zeros(n, dtype=np.int64)
     draw = np.concatenate([uniform(key, zero + stream, zero, 8) for stream in (2, 3)], axis=1)
+    timers = np.zeros((n, 5))
+    timers[:, _BREATHS], timers[:, _DART_LEFT] = draw[:, -1], draw[:, -2]
+    timers[:, _BLINK_LEFT], timers[:, _BLINK_AGE] = 0.5 + 4.0 * draw[:, -3], 10.0
     return Life(
         key=key,
-        phase=draw[:, : 2 * _SWAYS].reshape(n, _SWAYS, 2),
-        clock=np.zeros(n),
-        breath=draw[:, -1],
+        counts=np.zeros((n, 2), dtype=np.int64),
+        phase=2.0 * np.pi * draw[:, : len(_SWAY_HZ)],
+        timers=timers,
         dart=np.zeros((n, 2)),
-        dart_left_s=draw[:, -2],
-        dart_count=zero,
-        blink_left_s=0.5 + 4.0 * draw[:, -3],
-        blink_count=zero,
-        blink_age_s=np.full(n, 10.0),
-        eye=np.zeros((n, 2)),
-        head=np.zeros((n, 3)),
-        head_speed=np.zeros((n, 3)),
-        attention=np.ones(n),
-        voice=np.zeros(n),
+        head=np.zeros((n, 2, 3)),
+        mood=np.tile([1.0, 0.0], (n, 1)),
     )
+
+
+def start_gaze(n: int) -> Gaze:
+    """Straight ahead."""
+    return Gaze(np.zeros((n, 2)), np.zeros((n, 2)), np.zeros(n, dtype=bool))
 
 
 def advance_life(
-    config: LifeConfig,
-    state: Life,
-    emotion: Floats,
-    aim: Floats,
-    looking: Floats,
-    speaking: Floats,
-    dt_s: float,
+    config: LifeConfig, state: Life, gaze: Gaze, shares: Floats, mood: Floats, dt_s: float
 ) -> tuple[Life, Floats, Floats, Floats]:
-    """emotion: (n, 7) shares that sum to 1; aim: (n, 2) yaw and pitch of the target from the head, radians;
-    looking: (n,) 1 where no unit leads the gaze; speaking: (n,) 0..1.
+    """shares: (n, 7) emotion, summing to 1; mood: (n, 2) whether the target is looked at and whether one speaks, 0..1.
 
     -> state; (n, 24) half angles of ADDITIVE_JOINTS and the root's shift; lungs (n,) 0..1; blink (n,) 0..1.
     """
-    rates = emotion @ _rates(config)
-    breath_hz, depth, sway, pace, blink_hz, dart_hz, dart_size, tempo = rates.T
-    state = _draw(state, dart_hz, dart_size, blink_hz, dt_s)
-    clock = state.clock + pace * dt_s
-    breath = state.breath + breath_hz * dt_s
-    u = breath % 1.0
-    # In for 42 % of the cycle, out faster than the rest, then a pause: as the takes breathe.
-    lungs = 0.5 - 0.5 * np.cos(np.pi * np.minimum(u / 0.42, 1.0 + np.minimum((u - 0.42) / 0.464, 1.0)))
-    attention = state.attention + (looking - state.attention) * damper_fraction(0.15, dt_s)
-    voice = state.voice + (speaking - state.voice) * damper_fraction(0.12, dt_s)
-    wanted = np.empty_like(state.head)
-    wanted[:, :2] = aim * (config.head_share * attention)[:, None]
-    wanted[:, 2] = aim[:, 0] * config.torso_share * attention
-    half_life = np.array([config.head_half_life_s, config.head_half_life_s, config.torso_half_life_s])
-    head, head_speed = critical_spring(state.head, state.head_speed, wanted, half_life * tempo[:, None], dt_s)
-    cues = np.empty((len(clock), len(_CUES)), dtype=np.float32)
-    cues[:, 0] = lungs * depth * config.breath_share
-    waves = np.sin(2.0 * np.pi * (_SWAY_HZ * clock[:, None, None] + state.phase)) @ _SWAY_WEIGHT
-    cues[:, 1:7] = waves * (sway * config.sway_share)[:, None]
-    cues[:, 7] = head[:, 0]
-    cues[:, 8] = -head[:, 1]
-    cues[:, 9] = head[:, 2]
-    cues[:, 10] = voice * waves[:, 4] * config.nod_rad
-    blink = np.interp(state.blink_age_s / config.blink_s, _BLINK_AT, _BLINK_SHUT)
-    state = replace(
-        state,
-        clock=clock,
-        breath=breath,
-        head=head,
-        head_speed=head_speed,
-        attention=attention,
-        voice=voice,
-        blink_age_s=state.blink_age_s + dt_s,
-    )
-    return state, cues @ _EFFECT, lungs, blink
+    timers = state.timers + (shares @ config.per_second) * dt_s
+    dart, counts = state.dart, state.counts
+    if gaze.leap.any():
+        timers[:, _BLINK_LEFT] = np.where(gaze.leap, np.minimum(timers[:, _BLINK_LEFT], 0.0), timers[:, _BLINK_LEFT])
+    if timers[:, _DART_LEFT : _BLINK_LEFT + 1].min() <= 0.0:
+        dart, counts = _draw(config, state, shares, timers)
+    depth, sway, tempo = (shares @ config.amounts).T
+    mood = state.mood + (mood - state.mood) * (1.0 - 2.0 ** (-dt_s / config.mood_half_life_s))
+    wanted = gaze.aim.take(_HEAD_CUES, axis=1) * (config.head_shares * mood[:, :1])
+    # A critically damped spring, exact in dt (game.core.springs), at the emotion's tempo.
+    stiffness = config.head_stiffness / tempo[:, None]
+    away = state.head[:, 0] - wanted
+    push = state.head[:, 1] + away * stiffness
+    decay = np.exp(-stiffness * dt_s)
+    head = np.empty_like(state.head)
+    head[:, 0] = wanted + decay * (away + push * dt_s)
+    head[:, 1] = decay * (state.head[:, 1] - push * stiffness * dt_s)
+    waves = np.sin(timers[:, :1] * _SWAY_RATE + state.phase)
+    lungs = np.interp(timers[:, _BREATHS] % 1.0, _BREATH_AT, _BREATH)
+    cues = np.empty((len(timers), len(_CUES)))
+    cues[:, 0] = lungs * depth
+    np.multiply(waves, sway[:, None], out=cues[:, 1:13])
+    cues[:, 13:16] = head[:, 0]
+    cues[:, 16] = mood[:, 1] * waves[:, _NOD_WAVE] * config.nod_rad
+    blink = np.interp(timers[:, _BLINK_AGE] / config.blink_s, _BLINK_AT, _BLINK_SHUT)
+    return Life(state.key, counts, state.phase, timers, dart, head, mood), cues @ _EFFECT, lungs, blink
 
 
-def look(config: LifeConfig, state: Life, target_head: Floats, head_turn: Floats, dt_s: float) -> tuple[Life, Floats]:
-    """Eyes to the target as far as they go. target_head: (n, 3) direction in the head's frame; head_turn: (n,) yaw of
-    the head against the chest, radians, which the eyes overtake where a unit's own gaze leads. -> (n, 2) in [-1, 1]."""
-    ahead = np.hypot(target_head[:, 0], target_head[:, 2])
-    wanted = np.empty_like(state.eye)
-    wanted[:, 0] = np.arctan2(target_head[:, 0], target_head[:, 2]) / config.eye_yaw_rad
-    wanted[:, 1] = np.arctan2(target_head[:, 1], ahead) / config.eye_pitch_rad
-    wanted *= state.attention[:, None]
-    wanted[:, 0] += (1.0 - state.attention) * head_turn * (0.5 / config.eye_yaw_rad)
-    wanted = np.clip(wanted + state.dart, -1.0, 1.0)
-    eye = state.eye + (wanted - state.eye) * damper_fraction(config.eye_half_life_s, dt_s)
-    # A large shift of gaze brings a blink with it.
-    shift = np.abs(wanted - state.eye).max(axis=1) > 0.55
-    left = np.where(shift, np.minimum(state.blink_left_s, 0.02), state.blink_left_s)
-    return replace(state, eye=eye, blink_left_s=left), eye
+def look(
+    config: LifeConfig, life: Life, gaze: Gaze, target: Floats, head: Floats, chest: Floats, eyes: Floats, dt_s: float
+) -> Gaze:
+    """Eyes to the target (n, 3) as far as they go. head, chest: (n, 4, 4) matrices; eyes: (3,) in the head's frame."""
+    turn = head[:, :3, :3]
+    way = np.empty((len(target), 2, 3))
+    np.subtract(target, head[:, :3, 3] + turn @ eyes, out=way[:, 0])
+    way[:, 1] = (way[:, :1] @ turn)[:, 0]
+    angle = np.empty((len(target), 2, 2))
+    np.arctan2(way[..., 0], way[..., 2], out=angle[..., 0])
+    np.arctan2(way[..., 1], np.hypot(way[..., 0], way[..., 2]), out=angle[..., 1])
+    attention = life.mood[:, :1]
+    wanted = angle[:, 1] * (config.eye_scale * attention) + life.dart
+    if attention.min() < 0.999:
+        # Where a unit's own gaze leads, the eyes go a little further the way the head has turned.
+        ahead = (chest[:, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
+        wanted[:, 0] += (1.0 - attention[:, 0]) * np.arctan2(ahead[:, 0], ahead[:, 2]) * (0.5 * config.eye_scale[0])
+    wanted = np.minimum(np.maximum(wanted, -1.0), 1.0)
+    step = wanted - gaze.eye
+    eye = gaze.eye + step * (1.0 - 2.0 ** (-dt_s / config.eye_half_life_s))
+    return Gaze(eye, angle[:, 0], np.abs(step).max(axis=1) > _SHIFT)
 
 
-def _rates(config: LifeConfig) -> Floats:
-    """(7, 8) the config's columns; rates per second."""
-    return np.stack(
-        [
-            config.breath_per_min / 60.0,
-            config.breath_depth,
-            config.sway,
-            config.sway_pace,
-            config.blinks_per_min / 60.0,
-            config.darts_per_s,
-            config.dart_size,
-            config.tempo,
-        ],
-        axis=1,
-    )
-
-
-def _draw(state: Life, dart_hz: Floats, dart_size: Floats, blink_hz: Floats, dt_s: float) -> Life:
-    """New eye darts and blinks for those whose time has come."""
-    dart_left, blink_left = state.dart_left_s - dt_s, state.blink_left_s - dt_s
-    state = replace(state, dart_left_s=dart_left, blink_left_s=blink_left)
-    due = np.flatnonzero(dart_left <= 0.0)
+def _draw(config: LifeConfig, state: Life, shares: Floats, timers: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """New eye darts and blinks for those whose time has come; sets their timers, returns darts and counts."""
+    dart, counts = state.dart.copy(), state.counts.copy()
+    due = np.flatnonzero(timers[:, _DART_LEFT] <= 0.0)
     if due.size:
-        key, count = state.key[due], state.dart_count[due]
-        draws = uniform(key, np.zeros(due.size, dtype=np.intp), count, 4).T
-        dart, left, counts = state.dart.copy(), dart_left.copy(), state.dart_count.copy()
+        draws = uniform(state.key[due], np.zeros(due.size, dtype=np.intp), counts[due, 0], 4).T
         # Every third dart returns to the target itself, so the gaze does not wander off.
-        size = np.where(draws[3] < 0.33, 0.0, dart_size[due] * 2.0)
+        size = np.where(draws[3] < 0.33, 0.0, 2.0 * (shares[due] @ config.dart_size))
         dart[due, 0] = (draws[0] - 0.5) * 2.0 * size
         dart[due, 1] = (draws[1] - 0.5) * size
-        left[due] = (0.35 + 1.3 * draws[2]) / dart_hz[due]
-        counts[due] += 1
-        state = replace(state, dart=dart, dart_left_s=left, dart_count=counts)
-    due = np.flatnonzero(blink_left <= 0.0)
+        timers[due, _DART_LEFT] = (0.35 + 1.3 * draws[2]) / (shares[due] @ config.darts_per_s)
+        counts[due, 0] += 1
+    due = np.flatnonzero(timers[:, _BLINK_LEFT] <= 0.0)
     if due.size:
-        key, count = state.key[due], state.blink_count[due]
-        first, second = uniform(key, np.ones(due.size, dtype=np.intp), count, 2).T
-        left, age, counts = blink_left.copy(), state.blink_age_s.copy(), state.blink_count.copy()
+        first, second = uniform(state.key[due], np.ones(due.size, dtype=np.intp), counts[due, 1], 2).T
+        wait = (0.3 + 1.4 * first) * 60.0 / (shares[due] @ config.blinks_per_min)
         # One blink in eight comes double.
-        left[due] = np.where(second < 0.125, 0.3, (0.3 + 1.4 * first) / blink_hz[due])
-        age[due] = 0.0
-        counts[due] += 1
-        state = replace(state, blink_left_s=left, blink_age_s=age, blink_count=counts)
-    return state
+        timers[due, _BLINK_LEFT] = np.where(second < 0.125, 0.3, wait)
+        timers[due, _BLINK_AGE] = 0.0
+        counts[due, 1] += 1
+    return dart, counts
 
 
 def additive_slice() -> NDArray[np.intp]:

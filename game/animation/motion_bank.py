@@ -40,7 +40,7 @@ class MotionBank:
     count: (U, 7) variants, 0 where none. before_s, after_s: (U, 7, V) natural seconds before and after the
     stroke; mannerisms have everything after. stroke: (U,) frame of the stroke. loop_first, loop_frames: (U,)
     stretch that repeats (0 frames: none). owned: (U, PARTS) bool. frame: (U, 2) index into CONTACT_FRAMES.
-    contact: (U, 2) True where the unit declares a contact of that hand. looks: (U,) True where the unit moves
+    looks: (U,) True where the unit moves
     the gaze itself. mix_slope, mix_level: (U, 7), eq. 5's exponent is
     slope·i' + level. neutral_posture: the unit shown when the body must say nothing.
     """
@@ -56,7 +56,6 @@ class MotionBank:
     loop_frames: Floats
     owned: Bools
     frame: NDArray[np.intp]
-    contact: Bools
     looks: Bools
     mix_slope: Floats
     mix_level: Floats
@@ -82,7 +81,6 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
     stroke, loop_first, loop_frames = (np.zeros(len(units), dtype=np.float32) for _ in range(3))
     owned = np.zeros((len(units), len(ch.PARTS)), dtype=bool)
     frame = np.full((len(units), 2), ch.CONTACT_FRAMES.index("chest"), dtype=np.intp)
-    contact = np.zeros((len(units), 2), dtype=bool)
     chunks: list[Floats] = [np.zeros((2, ch.CHANNELS), dtype=np.float32)]
     total = 2
     for u, unit in enumerate(units):
@@ -91,7 +89,7 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
         if not unit.variants:
             raise BadInput(f"unit {unit.name}", expected="at least one span of a take", seen="none")
         owned[u] = np.ones(len(ch.PARTS), dtype=bool) if unit.layer == "posture" else _owned(unit)
-        frame[u], contact[u] = _contacts(unit)
+        frame[u] = _contacts(unit)
         spans = [_span_rows(library, takes, unit, v) for v in unit.variants]
         spans[0] = rw.align_to(spans[0], rw.REST_ROW)
         spans = [rw.align_to(rows, spans[0].mean(axis=0)) for rows in spans]
@@ -126,7 +124,6 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
         loop_frames=loop_frames,
         owned=owned,
         frame=frame,
-        contact=contact,
         looks=np.array([bool({"gaze"} & (u.uses | u.locks)) for u in units]),
         mix_slope=(2.0 * library.intensity / RADIUS**2).astype(np.float32),
         mix_level=np.where(count > 0, -((library.intensity / RADIUS) ** 2), _ABSENT).astype(np.float32),
@@ -139,17 +136,16 @@ def _owned(unit: MotionUnit) -> Bools:
     return np.array([part in unit.uses for part in ch.PARTS])
 
 
-def _contacts(unit: MotionUnit) -> tuple[NDArray[np.intp], Bools]:
+def _contacts(unit: MotionUnit) -> NDArray[np.intp]:
+    """(2,) the frames of the hands: the chest's where no contact is declared."""
     frame = np.full(2, ch.CONTACT_FRAMES.index("chest"), dtype=np.intp)
-    declared = np.zeros(2, dtype=bool)
     for hand, name in (unit.contacts or {}).items():
         if hand not in ch.HANDS:
             raise BadInput(f"unit {unit.name}: contact", expected=" | ".join(ch.HANDS), seen=hand)
         if name not in ch.CONTACT_FRAMES:
             raise BadInput(f"unit {unit.name}: contact of {hand}", expected=" | ".join(ch.CONTACT_FRAMES), seen=name)
         frame[ch.HANDS.index(hand)] = ch.CONTACT_FRAMES.index(name)
-        declared[ch.HANDS.index(hand)] = True
-    return frame, declared
+    return frame
 
 
 def _span_rows(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: MotionUnit, variant: Variant) -> Floats:
@@ -168,7 +164,7 @@ def _span_rows(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: Motion
     frames = slice(low, high)
     if variant.take not in takes:
         takes[variant.take] = rw.take_rows(take.rotation, take.root)
-    rows = takes[variant.take].span(frames, _contacts(unit)[0])
+    rows = takes[variant.take].span(frames, _contacts(unit))
     wanted = max(round((high - low) * take.frame_time_s * FPS), _POSTURE_MIN_FRAMES if posture else 4)
     return rows if wanted == len(rows) else rw.resample(rows, wanted)
 

@@ -45,9 +45,10 @@ _LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array
 _HINGE = figure.HINGE[..., None]
 _FLAT = np.eye(3, dtype=np.float32)
 _FRAMES = [figure.WHERE[name] for name in ch.CONTACT_FRAMES[1:]]
+_BODY = np.array([figure.WHERE[name] for name in collision.BODY_JOINTS])
 _HEAD, _CHEST = figure.WHERE["head"], figure.WHERE["chest"]
 _ENDS = figure.ENDS.reshape(-1)
-for _array in (_ADDED, _EYES, _PALM_POINT, _FLAT):
+for _array in (_ADDED, _BODY, _EYES, _PALM_POINT, _FLAT):
     _array.setflags(write=False)
 
 
@@ -72,6 +73,7 @@ class PerformerState:
     playback: playback.Playback
     blend: blending.Blend
     life: liveliness.Life
+    gaze: liveliness.Gaze
     contact_frames: Floats
     push: Floats
     push_speed: Floats
@@ -112,6 +114,7 @@ class Performer:
             playback=playback.start(n, len(self.layers)),
             blend=blending.start_blend(n, len(self.layers)),
             life=liveliness.start_life(n, seed, first),
+            gaze=liveliness.start_gaze(n),
             contact_frames=frames,
             push=np.zeros((n, 2, 3)),
             push_speed=np.zeros((n, 2, 3)),
@@ -135,9 +138,10 @@ class Performer:
             push, push_speed = critical_spring(push, push_speed, wanted, PUSH_HALF_LIFE_S, dt_s)
             hand[:, :, :3, 3] += push
         self._place_limbs(rotation, joints, ends, hand)
-        life, gaze = self._eyes(life, joints, signal, dt_s)
-        pose = Pose(rotation, root, gaze, blink, lungs)
-        return PerformerState(play, blend, life, contact_frames, push, push_speed), pose
+        head, chest = joints[:, _HEAD], joints[:, _CHEST]
+        gaze = liveliness.look(self.life, life, state.gaze, signal.gaze_target, head, chest, _EYES, dt_s)
+        pose = Pose(rotation, root, gaze.eye, blink, lungs)
+        return PerformerState(play, blend, life, gaze, contact_frames, push, push_speed), pose
 
     def _layers(
         self, state: PerformerState, decisions: Decisions, signal: PerformSignal, emotion: Floats, dt_s: float
@@ -185,15 +189,10 @@ class Performer:
         dt_s: float,
     ) -> tuple[liveliness.Life, Floats, Floats, Floats]:
         """Breath, sway and the head's share of the gaze added to the row."""
-        to_target = signal.gaze_target - state.contact_frames[:, 1, :3, 3]
-        aim = np.empty((len(to_target), 2))
-        aim[:, 0] = np.arctan2(to_target[:, 0], to_target[:, 2])
-        aim[:, 1] = np.arctan2(to_target[:, 1], np.hypot(to_target[:, 0], to_target[:, 2]))
-        aim *= blend.known[:, None] & state.blend.known[:, None]
-        looking = np.where((self.bank.looks[play.unit] & play.active).any(axis=1), 0.0, 1.0)
-        life, added, lungs, blink = liveliness.advance_life(
-            self.life, state.life, emotion, aim, looking, signal.speaking, dt_s
-        )
+        mood = np.empty((len(blend.row), 2))
+        mood[:, 0] = ~(self.bank.looks[play.unit] & play.active).any(axis=1)
+        mood[:, 1] = signal.speaking
+        life, added, lungs, blink = liveliness.advance_life(self.life, state.life, state.gaze, emotion, mood, dt_s)
         row = blend.row.copy()
         row[:, _ADDED] += added
         return life, row, lungs, blink
@@ -226,9 +225,7 @@ class Performer:
         # The elbow follows the wrist about half way.
         elbow = joints.take(figure.LOWER[:2], axis=1)[..., :3, 3] + 0.5 * (wrist - ends[:, :2])
         points[:, :, 6] = 0.5 * (wrist + elbow)
-        maps = collision.body_frames(
-            {name: joints[:, figure.WHERE[name]] for name in ("chest", "spine", "hips", "head")}
-        )
+        maps = collision.body_frames(joints.take(_BODY, axis=1))
         return collision.push_out(maps, points)
 
     @staticmethod
@@ -258,16 +255,6 @@ class Performer:
         above[:, :4] = joints.take(figure.SHOULDERS, axis=1)[..., :3, :3]
         above[:, 4:] = model[:, :8]
         rotation[:, _ENDS] = bl.from_matrix(above.swapaxes(-1, -2) @ model)
-
-    def _eyes(
-        self, life: liveliness.Life, joints: Floats, signal: PerformSignal, dt_s: float
-    ) -> tuple[liveliness.Life, Floats]:
-        head = joints[:, _HEAD]
-        turn = head[:, :3, :3].swapaxes(-1, -2)
-        eyes = head[:, :3, 3] + head[:, :3, :3] @ _EYES
-        toward = (turn @ (signal.gaze_target - eyes)[..., None])[..., 0]
-        ahead = (joints[:, _CHEST, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
-        return liveliness.look(self.life, life, toward, np.arctan2(ahead[:, 0], ahead[:, 2]), dt_s)
 
 
 def _shares(signal: PerformSignal) -> Floats:

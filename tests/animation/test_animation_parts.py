@@ -68,7 +68,7 @@ def test_reach_is_clamped_softly() -> None:
 
 def body_maps() -> np.ndarray:
     rest = REFERENCE.rest_model.astype(np.float32)
-    return collision.body_frames({n: rest[None, REFERENCE.index[n]] for n in collision.BODY_JOINTS})
+    return collision.body_frames(rest[None, [REFERENCE.index[name] for name in collision.BODY_JOINTS]])
 
 
 def test_points_inside_the_body_are_pushed_to_its_surface_and_others_left_alone() -> None:

@@ -229,7 +229,7 @@ def test_gaze_eyes_lead_and_the_head_follows(library: UnitLibrary, performer: Pe
             state, script.at(tick), script.signal(gaze=GAZE_CUSTOMER if tick < 20 else GAZE_AWAY), DT
         )
         eyes.append(float(pose.gaze[0, 0]))
-        head.append(float(state.life.head[0, 0]))
+        head.append(float(state.life.head[0, 0, 0]))
     assert eyes[22] < -0.7, "the eyes are there at once"
     assert abs(head[22]) < 0.4 * abs(head[59]), "the head takes its time"
     assert eyes[59] > eyes[23], "as the head arrives the eyes return"
