@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,11 @@ import pytest
 
 from game.core.paths import DIALOGUE
 from game.story import (
+    ACTS,
     Beat,
     Chose,
     Event,
+    Memory,
     Outcome,
     Script,
     Start,
@@ -38,6 +40,7 @@ class Player:
     reload: bool
     item: str = ""
     seed: int = 1
+    memory: Memory | None = None
     env: dict[str, Value] = field(default_factory=dict)
     beats: list[Beat] = field(default_factory=list)
 
@@ -45,7 +48,7 @@ class Player:
         self.item = self.item or next(iter(self.script.items))
         price = self.script.items[self.item].list_price
         self.env = {"list_price": price, "ask": price, "price": price, **self.env}
-        self.state: StoryState = begin(self.script, self.item, self.seed)
+        self.state: StoryState = begin(self.script, self.item, self.seed, memory=self.memory)
         self.send(Start())
 
     def send(self, event: Event, **env: Value) -> Beat:
@@ -70,11 +73,13 @@ class Player:
     def beat(self) -> Beat:
         return self.beats[-1]
 
-    def random_move(self, rng: random.Random) -> Beat:
-        """One move as a market without feelings would answer it."""
+    def random_move(self, rng: random.Random, known: Container[str] = ()) -> Beat:
+        """One move as a market without feelings would answer it; mostly something not yet ``known``."""
         round_ = int(self.env.get("round", 1))
-        choice = rng.choice([option for option in self.beat.choices if option.available])
-        trust = float(self.env.get("trust", 0.3)) + rng.choice([-0.12, 0.0, 0.12])
+        options = [option for option in self.beat.choices if option.available]
+        new = [option for option in options if option.id not in known and option.act in ACTS]
+        choice = rng.choice(new if new and known and rng.random() < 0.8 else options)
+        trust = float(self.env.get("trust", 0.3)) + rng.choice([-0.12, 0.0, 0.12, 0.12])
         env: dict[str, Value] = {
             "quality": rng.choice(["right", "neutral", "wrong"]),
             "tells": rng.random() < 0.7,
@@ -90,7 +95,8 @@ class Player:
         if choice.act == "leave":
             outcome = rng.choice(["called_back", "walked_away"])
         elif choice.act == "offer" or rng.random() < 0.3:
-            outcome = rng.choice(["refused_offer", "refused_offer", "refused_offer", "insulted", "deal"])
+            early = round_ < 4
+            outcome = rng.choice(["refused_offer", "refused_offer", "insulted", "refused_offer" if early else "deal"])
             names = {"refused_offer": "refused", "insulted": "insult", "deal": "accepted"}
             share = rng.uniform(0.4, 1.0)
             env |= {"offer_result": names[outcome], "offer": float(self.env["list_price"]) * share}

@@ -9,7 +9,7 @@ import pytest
 
 from game.core.paths import ASSETS
 from game.formats.yaml_source import load_yaml
-from game.story import ACTS, TimedText, load_script, shipped_stalls, wrap
+from game.story import ACTS, TimedText, load_script, memory_of, shipped_stalls, wrap
 from game.story.text import slots
 
 STALLS = [path.stem for path in shipped_stalls()]
@@ -29,33 +29,36 @@ def test_size_of_the_stall(stall):
 def test_random_walks_reach_every_node_choice_and_ending(stall, talk):
     nodes, offered, taken, ended = set(), set(), set(), Counter()
     rng = random.Random(5)
-    walks = 0
-    missing = len(stall.nodes)
-    while missing and walks < 900:
-        player = talk(stall, item=rng.choice(list(stall.items)), seed=walks)
-        if walks % 10 == 9:
-            player = _second_visit(stall, player, walks)
-        walks += 1
+    memory = None
+    for seed in range(900):
+        # An afternoon of four visits, then the stall forgets.
+        memory = None if seed % 4 == 0 else memory
+        player = talk(stall, item=rng.choice(list(stall.items)), seed=seed, memory=memory)
         while not player.beat.ended:
             offered |= {choice.id for choice in player.beat.choices}
-            player.random_move(rng)
+            player.random_move(rng, known=taken)
+        memory = memory_of(stall, player.state)
         taken |= player.state.chosen
         nodes |= set(player.state.visits)
         ended[player.beat.ended] += 1
-        missing = len(set(stall.nodes) - nodes) + len(set(stall.choices) - taken)
+        if nodes >= set(stall.nodes) and taken >= set(stall.choices):
+            break
     assert set(stall.nodes) - nodes == set()
     assert set(stall.choices) - offered == set()
     assert set(stall.choices) - taken == set()
     assert set(stall.endings) == set(ended)
 
 
-def _second_visit(stall, player, seed):
-    from game.story import Start, advance, begin, memory_of
-
-    state = begin(stall, player.item, seed, memory=memory_of(stall, player.state))
-    player.state, beat = advance(stall, state, Start(), player.env)
-    player.beats = [beat]
-    return player
+def test_she_remembers(flea, talk):
+    player = talk(flea, item="vase")
+    player.choose("leave", "walked_away", trust=0.6)
+    assert player.beat.ended == "left_friends"
+    memory = memory_of(flea, player.state)
+    again = talk(flea, item="vase", memory=memory)
+    assert again.beat.lines[0].id in {"again_hidden", "again_front", "again_know", "again_well"}
+    assert {talk(flea, item="vase", memory=memory, seed=s).beat.lines[0].id for s in range(30)} >= {"again_hidden"}
+    other = talk(flea, item="cups", memory=memory)
+    assert [line.id for line in other.beat.lines][1] == "about_cups"
 
 
 def test_nothing_repeats_word_for_word_within_a_talk(stall, talk):
