@@ -1,0 +1,1 @@
+"""The face workshop: proposals, ratings, fits, plots, the authoring window. Offline only."""
