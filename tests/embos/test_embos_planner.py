@@ -302,7 +302,13 @@ def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> No
         used = planner.tables.unit >= 0
         wanted = scores.phi_time(now, started, lengths, waits)
         np.testing.assert_array_equal(time[:, used], wanted[:, used])
+        before = state
         state, d = planner.advance(state, signal)
+        # Whoever had to give way has had its duration.
+        who, layer = np.nonzero((state.running != before.running) & (before.running < planner.tables.slots))
+        slot = before.running[who, layer]
+        cut = started[who, slot] + lengths[who, slot] >= now
+        lengths[who[cut], slot[cut]] = signal.time_s - started[who[cut], slot[cut]]
         who, layer = np.nonzero(d.started & (d.duration_s > 0.0))
         slot = state.running[who, layer]
         started[who, slot], lengths[who, slot] = signal.time_s, d.duration_s[who, layer]
