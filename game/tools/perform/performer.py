@@ -61,7 +61,7 @@ def _notice(stage: Stage, rng: np.random.Generator) -> None:
 def _trunk_channels(stage: Stage, rng: np.random.Generator) -> tuple[dict[str, Floats], Floats]:
     """Body channels as moved, and the shiver of both wrists (F, 2, 3) metres."""
     effort, frames = stage.effort, len(stage.time)
-    _notice(stage, rng)
+    _notice(stage, rng.spawn(1)[0])
     keyed = np.stack([delay(stage.base[n] + stage.added[n], _DELAYS_S[CHAIN[n]] * effort.drag) for n in CHANNELS], -1)
     frequency, damping, response = effort.spring
     moved = spring(keyed, frequency * np.array([_STIFFNESS[CHAIN[n]] for n in CHANNELS]), damping, response)

@@ -115,6 +115,8 @@ def perform_score(score: Score, seed: int, length_s: float | None = None) -> tup
         cue = _vary(planned, variation)
         if cue.do not in repertoire or (cue.do not in POSTURES and cue.do not in acts):
             raise BadInput(f"score {score.take}", expected="a behaviour of the repertoire", seen=cue.do)
+        if cue.at_s >= length:
+            continue
         what = repertoire[cue.do]
         cue = replace(cue, side=_side(what, cue), at_s=occupied.free_from(what, cue.at_s))
         if cue.at_s >= length:
