@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -261,7 +261,7 @@ def on_legs(
 
 def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float, float]]) -> StaticMesh:
     """Join parts that never move."""
-    parts = _ordered(parts)
+    parts = [replace(part, triangle=_turned(part)) for part in _ordered(parts)]
     triangle, runs = _join(parts)
     mesh = StaticMesh(
         np.concatenate([p.position for p in parts]),
@@ -275,6 +275,13 @@ def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float
     for array in (mesh.position, mesh.normal, mesh.outline, mesh.palette, triangle):
         array.setflags(write=False)
     return mesh
+
+
+def _turned(part: Part) -> NDArray[np.uint32]:
+    """The part's triangles, those turned about that wind against their normals: back faces are not drawn."""
+    a, b, c = (part.position[part.triangle[:, i]].astype(np.float64) for i in range(3))
+    wrong = (np.cross(b - a, c - a) * part.normal[part.triangle].sum(axis=1)).sum(axis=1) < 0.0
+    return np.where(wrong[:, None], part.triangle[:, ::-1], part.triangle)
 
 
 def joint_boxes(

@@ -53,6 +53,11 @@ class Renderer(Owner):
         self._character: CharacterDrawing | None = None
         self._painter: FacePainter | None = None
         self._baked: BakeKey | None = None
+        # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
+        self.drafts = device.windowed
+        self._is_draft = False
+        self._seen: BakeKey | None = None  # of the last frame
+        self._turning = False  # the camera moved between the last two frames
         self._last_box: Box = (0, 0, 0, 0)
         self._frames = 0
         self._light: LightBox | None = None  # for which the shadow map was drawn
@@ -85,9 +90,7 @@ class Renderer(Owner):
         targets = self._ensure_targets()
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items)
         changed = self._last_box
-        if key != self._baked:
-            self._scene.bake(key, targets.bake, self.level.line_px)
-            self._baked = key
+        if self._bake(key, targets):
             changed = (0, 0, *targets.size)
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
         targets.work.use()
@@ -98,6 +101,17 @@ class Renderer(Owner):
             changed = union(changed, self._last_box) if changed[2] else self._last_box
         self._show(view, targets, changed)
         self._frames += 1
+
+    def _bake(self, key: BakeKey, targets: FrameTargets) -> bool:
+        """See that the baked picture fits; True if it was drawn."""
+        turned = self._seen is not None and key.camera != self._seen.camera
+        draft = self.drafts and turned and self._turning
+        self._turning, self._seen = turned, key
+        if key == self._baked and (draft or not self._is_draft):
+            return False
+        self._scene.bake(key, targets.bake, self.level.line_px, draft=draft)
+        self._baked, self._is_draft = key, draft
+        return True
 
     def _ensure_targets(self) -> FrameTargets:
         targets = self._targets

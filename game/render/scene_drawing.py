@@ -129,28 +129,32 @@ class SceneDrawing(Owner):
             self._receivers[key] = (program, self.own(self._device.vertex_array(program, [entry])))
         return self._receivers[key][1]
 
-    def bake(self, key: BakeKey, targets: BakeTargets, line_px: float) -> None:
-        """Draw everything that stands still into ``targets``: the graded picture, its depth, and the dark picture."""
+    def bake(self, key: BakeKey, targets: BakeTargets, line_px: float, *, draft: bool = False) -> None:
+        """Draw everything that stands still into ``targets``: the graded picture, its depth, and the dark picture.
+
+        A ``draft`` is drawn without samples where that saves any, for the frames of a moving camera.
+        """
         context = self._context
+        raw = targets.raw_draft if draft else targets.raw
         runs = self._runs(key)
         self._frame.write(key.camera, self._lights, STALL_LIGHT, key.size, line_px)
         self._cast(runs)
-        targets.raw.use()
-        targets.raw.clear(depth=1.0)
+        raw.use()
+        raw.clear(depth=1.0)
         self._draw_backdrop(key, 1.0)
         self._shade(runs, sun_share=1.0)
         self._draw_hulls(runs)
-        targets.resolve()
+        targets.resolve(raw)
         self._make_bloom(targets)
         self._grade(targets, targets.still, key.stall)
-        targets.raw.use()
+        raw.use()
         if key.stall:
             context.enable_only(moderngl.DEPTH_TEST)
             context.depth_func = "<="
             self._shade([run for run in runs if run.group == "table"], sun_share=0.0)
         else:
             self._draw_backdrop(key, _DARK_FLOOR)
-        targets.resolve_colour()
+        targets.resolve_colour(raw)
         self._grade(targets, targets.dark.target, key.stall)
 
     def _runs(self, key: BakeKey) -> list[Run]:
@@ -176,7 +180,8 @@ class SceneDrawing(Owner):
         self._backdrop.render()
 
     def _shade(self, runs: Iterable[Run], sun_share: float) -> None:
-        self._context.enable_only(moderngl.DEPTH_TEST)
+        self._context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self._context.cull_face = "back"
         self.shadow_map.use(1)
         for run in runs:
             set_uniforms(self._shaders[run.kind], sun_share=sun_share)

@@ -49,7 +49,8 @@ class Picture(Owner):
 class BakeTargets(Owner):
     """What baking needs and leaves behind; ``still`` has as many samples as the moving picture.
 
-    raw: ungraded scene with samples of its own; still: graded colour and depth; dark: graded, in full shadow.
+    raw: ungraded scene with samples of its own; raw_draft: with as few as may be; still: graded colour and depth;
+    dark: graded, in full shadow.
     """
 
     def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
@@ -57,19 +58,21 @@ class BakeTargets(Owner):
         self._context = device.context
         # Samples can only be copied to a picture of as many samples, or of none.
         self.raw = _target(self, device, size, min(samples or BAKE_SAMPLES, device.max_samples))
+        # Where the moving picture has no samples, a draft needs none either.
+        self.raw_draft = self.raw if samples else _target(self, device, size, 0)
         self.still = _target(self, device, size, samples)
         self.plain = self.own(Picture(device, size))
         self.dark = self.own(Picture(device, size))
         small = (max(1, size[0] // 4), max(1, size[1] // 4))
         self.blur = (self.own(Picture(device, small)), self.own(Picture(device, small)))
 
-    def resolve(self) -> None:
+    def resolve(self, raw: moderngl.Framebuffer) -> None:
         """Copy the raw colour to ``plain`` and the raw depth to ``still``."""
-        self._context.copy_framebuffer(self.still, self.raw)
-        self.resolve_colour()
+        self._context.copy_framebuffer(self.still, raw)
+        self.resolve_colour(raw)
 
-    def resolve_colour(self) -> None:
-        self._context.copy_framebuffer(self.plain.target, self.raw)
+    def resolve_colour(self, raw: moderngl.Framebuffer) -> None:
+        self._context.copy_framebuffer(self.plain.target, raw)
 
 
 class FrameTargets(Owner):

@@ -211,3 +211,20 @@ def test_nothing_leaks(device, model, stall, backdrop, view, monkeypatch):
     assert len(made) > 200
     alive = [item for item in made if not isinstance(item.mglo, moderngl.InvalidObject)]
     assert alive == []
+
+
+def test_a_moving_camera_gets_drafts_and_a_resting_one_the_full_picture(renderer, view):
+    wanted = shot(renderer, view)
+    steps = [replace(view, camera=replace(view.camera, eye=(0.02 * i, 1.16, 3.02))) for i in (3, 2, 1)]
+    renderer.drafts = True
+    try:
+        for step in steps:
+            shot(renderer, step)
+        arriving = shot(renderer, view)
+        assert renderer._is_draft
+        resting = shot(renderer, view)
+    finally:
+        renderer.drafts = False
+    assert not renderer._is_draft
+    assert np.array_equal(resting, wanted)
+    assert np.abs(arriving.astype(int) - wanted).mean() < 4.0
