@@ -26,10 +26,10 @@ from game.app.arguments import parse_size
 from game.app.input import Action, action_of
 from game.app.loading import load_step_assets
 from game.app.saves import load_game, save_game
-from game.app.screens import TalkScreen, TitleScreen
+from game.app.screens import OutcomeScreen, TableScreen, TalkScreen, TitleScreen
 from game.app.session import Screen, Session
 from game.app.settings import Settings, load_settings, user_folder
-from game.app.stage import HOME_CAMERA, TALK_CAMERA, StageShow, load_stage
+from game.app.stage import HOME_CAMERA, SIDE_CAMERA, TALK_CAMERA, StageShow, load_stage
 from game.app.step import new_world, step
 from game.app.strings import load_strings
 from game.app.ui import Canvas
@@ -39,6 +39,7 @@ from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Rende
 
 __all__ = ["Window", "add_arguments", "run"]
 
+CAMERAS = {TableScreen: TALK_CAMERA, TalkScreen: TALK_CAMERA, OutcomeScreen: SIDE_CAMERA}
 MAX_TICKS_A_FRAME = 5
 """After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
 
@@ -134,13 +135,13 @@ class Window:
             self._language = _speakable(session)
         params = session.world.body.face_params
         assert params is not None
-        camera = TALK_CAMERA if isinstance(self.screen, TalkScreen) else HOME_CAMERA
+        camera = CAMERAS.get(type(self.screen), HOME_CAMERA)
         view = self.show.frame(
             params,
             camera=camera,
             share=self._late_s / TICK_S,
             show_face=session.world.mode != "body",
-            hidden_items=frozenset(f"item:{item}" for item in session.afternoon.owned),
+            hidden_items=self.stage.gone(session.afternoon.owned),
             time_s=session.world.time_s,
             hud=self._draw_hud,
         )

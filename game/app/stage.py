@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,14 +13,18 @@ from game.animation import Pose, Rig, SpringState
 from game.app.rig import load_rig
 from game.core.paths import ASSETS
 from game.face import DrawList, FaceParams, tessellate
+from game.formats import load_yaml
 from game.render import HERO, Camera, CharacterModel, FrameView, Hud, StaticMesh
 from game.render.assets import load_character, load_picture, load_stall
 
-__all__ = ["HOME_CAMERA", "TALK_CAMERA", "Puppet", "StageAssets", "StageShow", "load_stage"]
+__all__ = ["HOME_CAMERA", "SIDE_CAMERA", "TALK_CAMERA", "Puppet", "StageAssets", "StageShow", "load_stage"]
 
 TALK_CAMERA = Camera((0.36, 1.15, 3.16), (0.26, 0.93, 0.0), 25.5)
 """The talk is framed with room on the right for what may be said, and the hands above the subtitles."""
 
+
+SIDE_CAMERA = Camera((0.66, 1.15, 3.16), (0.56, 0.95, 0.0), 25.5)
+"""Where a sheet covers the right half."""
 
 HOME_CAMERA = HERO
 """Title and menus: the whole stall."""
@@ -28,12 +32,20 @@ HOME_CAMERA = HERO
 
 @dataclass(frozen=True, eq=False)
 class StageAssets:
-    """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8."""
+    """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8.
+
+    carries: item -> the item that stands on it.
+    """
 
     model: CharacterModel
     rig: Rig
     stall: StaticMesh
     backdrop: NDArray[np.uint8]
+    carries: Mapping[str, str]
+
+    def gone(self, sold: frozenset[str]) -> frozenset[str]:
+        """The stall's groups that are no longer there; what still carries something waits for it to go first."""
+        return frozenset(f"item:{item}" for item in sold if self.carries.get(item, item) in sold)
 
 
 def load_stage(person: str = "mira", stall: str = "flea", folder: Path = ASSETS) -> StageAssets:
@@ -44,7 +56,13 @@ def load_stage(person: str = "mira", stall: str = "flea", folder: Path = ASSETS)
         rig=load_rig(characters / f"{person}.vrm"),
         stall=load_stall(stalls / f"{stall}.glb"),
         backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
+        carries=_carries(stalls / f"{stall}.yaml"),
     )
+
+
+def _carries(path: Path) -> dict[str, str]:
+    goods = load_yaml(path)["goods"].as_list()
+    return {row["on"].as_str(): row["item"].as_str() for row in goods if row.get("on") is not None}
 
 
 @dataclass

@@ -12,7 +12,8 @@ OVERLAYS = {"feelings": draw_feelings, "units": draw_units, "networks": draw_net
 
 
 def draw_overlays(session: Session, canvas: Canvas) -> None:
-    """Draw those that are switched on, the networks first (they are the largest)."""
-    for name in ("networks", "feelings", "units"):
+    """Draw those that are switched on; the networks need the room of the others and name the active nodes too."""
+    names = ["networks"] if "networks" in session.overlays else ["feelings", "units"]
+    for name in names:
         if name in session.overlays:
             OVERLAYS[name](session, canvas)

@@ -23,7 +23,7 @@ def draw_networks(session: Session, canvas: Canvas) -> None:
     if world.body.signal is None:
         return
     width = canvas.width - 420.0
-    canvas.panel(Rect(10, 10, width, canvas.height - 164), fade(PALETTE["shade"], 1.25), radius=18)
+    canvas.panel(Rect(10, 10, width, min(canvas.height - 164, 560)), fade(PALETTE["shade"], 1.25), radius=18)
     canvas.text(10 + width / 2, 18, s("network_title"), 16, PALETTE["white"], align="center")
     explained = planner.explain(world.body.planner, world.body.signal, 0)
     column = width / len(explained)

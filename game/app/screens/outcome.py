@@ -64,15 +64,22 @@ class OutcomeScreen:
         ending = script.endings.get(str(talk.beat.ended))
         if ending is not None:
             canvas.paragraph(Rect(x, y + 52, box.w - 72, 52), ending.caption.get(s.language), 18, PALETTE["faint"])
-        canvas.text(x, y + 112, script.items[talk.item].name.get(s.language), 21, INK, font="bold")
-        canvas.text(box.x + box.w - 36, y + 112, f"{s('list_price')} {yen(talk.list_price)}", 18, align="right")
+        y += 110
+        name = script.person.name.get(s.language)
+        right = box.x + box.w - 36
+        canvas.text(x, y, script.items[talk.item].name.get(s.language), 21, INK, font="bold")
+        canvas.text(right, y, f"{s('list_price')} {yen(talk.list_price)}", 18, align="right")
+        y += 32
         if won:
-            canvas.text(x, y + 142, s("paid", money=yen(talk.deal_price)), 20)
-            canvas.text(box.x + box.w - 36, y + 142, s("share", share=f"{talk.surplus:.0%}"), 18, align="right")
-            canvas.bar(Rect(x, y + 174, box.w - 72, 14), talk.surplus, PALETTE["teal"], fade(PALETTE["line"], 0.18))
+            canvas.text(x, y, s("paid", money=yen(talk.deal_price)), 20)
+            canvas.text(right, y, s("share", share=f"{talk.surplus:.0%}"), 18, align="right")
+            canvas.bar(Rect(x, y + 32, box.w - 72, 14), talk.surplus, PALETTE["teal"], fade(PALETTE["line"], 0.18))
+            y += 56
         lowest = yen(ask_money(talk.list_price, talk.bargain.lowest))
-        canvas.text(x, y + 198, s("lowest", money=lowest), 18, PALETTE["faint"])
-        self._draw_curve(session, canvas, Rect(x, y + 262, box.w - 72, 178))
+        canvas.text(x, y, s("lowest", name=name, money=lowest), 18, PALETTE["faint"])
+        bottom = box.y + box.h - 66
+        top = y + 74
+        self._draw_curve(session, canvas, Rect(x, top, box.w - 72, min(bottom - 88 - top, 240)), name)
         self.buttons.lay(
             [
                 Button("to_stall", s("to_stall"), Rect(x, box.y + box.h - 66, 250, 48)),
@@ -81,26 +88,26 @@ class OutcomeScreen:
         )
         self.buttons.draw(canvas)
 
-    def _draw_curve(self, session: Session, canvas: Canvas, room: Rect) -> None:
+    def _draw_curve(self, session: Session, canvas: Canvas, room: Rect, name: str) -> None:
         """The hidden feelings from move to move, with the player's moves below."""
         s = session.strings
-        canvas.text(room.x, room.y - 30, s("what_she_felt"), 18, INK, font="bold")
+        canvas.text(room.x, room.y - 30, s("what_was_felt", name=name), 18, INK, font="bold")
         canvas.panel(room, fade(PALETTE["line"], 0.08), radius=12)
         felt = np.array([mark.felt[:6] for mark in self.marks])
         steps = max(len(self.marks) - 1, 1)
         xs = [room.x + 18 + i * (room.w - 36) / steps for i in range(len(self.marks))]
         legend = room.x
-        for k, name in enumerate(SIX):
+        for k, feeling in enumerate(SIX):
             if felt[:, k].max() < 0.15:
                 continue
-            colour = FEELING_COLOURS[name]
+            colour = FEELING_COLOURS[feeling]
             points = [(x, room.y + room.h - 14 - v * (room.h - 28)) for x, v in zip(xs, felt[:, k], strict=True)]
             if len(points) > 1:
                 canvas.lines(points, 3.5, colour)
             for x, y in points:
                 canvas.dot(x, y, 4.5, colour)
             canvas.dot(legend + 8, room.y + room.h + 54, 6, colour)
-            legend += 22 + canvas.text(legend + 20, room.y + room.h + 44, s(name), 15, PALETTE["faint"]) + 16
+            legend += 22 + canvas.text(legend + 20, room.y + room.h + 44, s(feeling), 15, PALETTE["faint"]) + 16
         for x, mark in zip(xs[1:], self.marks[1:], strict=True):
             colour = QUALITY_COLOURS.get(mark.quality, PALETTE["faint"])
             canvas.lines([(x, room.y + 6), (x, room.y + room.h - 4)], 1.5, fade(colour, 0.5))
