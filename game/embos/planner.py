@@ -149,8 +149,9 @@ class Planner:
         """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
         t, config = self.tables, self.config
         count, layers, width = len(rows), len(t.layers), t.width
-        running, wait_s, phi = state.running[rows], state.wait_s[rows], state.phi_state[rows]
-        marks_s = state.marks_s[rows]
+        # Everybody in order (a character alone, above all) is looked at in place instead of gathered.
+        some: Ints | slice = slice(None) if count == len(state) else rows
+        running, wait_s, marks_s = state.running[some], state.wait_s[some], state.marks_s[some]
         ahead = marks_s >= now
         within, held = ahead[..., 0], ahead[..., 1]
         waits = wait_s >= now
@@ -161,6 +162,7 @@ class Planner:
             # A gesture under way runs to its end though its word has passed.
             under_way = running[:, t.gesture_layer, None] == t.gesture_slots
             words = np.maximum(words, under_way & within[:, t.gesture_layer, None])
+        phi = state.phi_state[rows]
         phi[:, t.gestures] *= words
         follow = t.follow[running]
         score = (time * phi).reshape(count, layers, width)
@@ -181,11 +183,11 @@ class Planner:
                 best = np.where(self._kept(at, mine, best, score[:, at], time, link, held[:, at]), mine, best)
             chosen[:, at] = best
         # A unit that wins again after its waiting time starts again; while it waits it is merely kept.
-        time_of = time[np.arange(count)[:, None], chosen]
-        again = (chosen == running) & (time_of == config.steady) & t.real[chosen]
-        next_s = np.minimum(
-            np.where(waits, wait_s, np.inf).min(axis=1), np.where(ahead, marks_s, np.inf).min(axis=(1, 2))
-        )
+        again = (chosen == running) & ~within & t.real[chosen]
+        if np.count_nonzero(again):
+            again &= time[np.arange(count)[:, None], chosen] == config.steady
+        next_s = np.where(waits, wait_s, np.inf).min(axis=1)
+        next_s = np.minimum(next_s, np.where(ahead, marks_s, np.inf).min(axis=(1, 2)))
         shape = (count, layers, width)
         return Factors(follow, time.reshape(shape), phi.reshape(shape), linkage, score, chosen, within, again, next_s)
 
