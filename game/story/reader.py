@@ -70,7 +70,7 @@ def is_stall(path: Path) -> bool:
 def load_script(path: Path) -> Script:
     """Read one stall. Raises BadInput for its first error, telling how many more there are."""
     findings = Findings()
-    script = read_script(path, findings)
+    script = read_script(path, findings, traps=False)
     errors = sorted(findings.errors, key=lambda f: (f.where.line or 0, f.where.col or 0))
     if errors or script is None:
         first = errors[0]
@@ -80,10 +80,11 @@ def load_script(path: Path) -> Script:
     return script
 
 
-def read_script(path: Path, findings: Findings, text: str | None = None) -> Script | None:
+def read_script(path: Path, findings: Findings, text: str | None = None, *, traps: bool = True) -> Script | None:
     """Read one stall, noting all faults; None where too little is left to look further into.
 
-    A script with errors may still come back, for more checks; it must not be run.
+    A script with errors may still come back, for more checks; it must not be run. ``traps``: also look for words
+    that other YAML tools misread.
     """
     if text is None:
         try:
@@ -91,7 +92,7 @@ def read_script(path: Path, findings: Findings, text: str | None = None) -> Scri
         except BadInput as error:
             findings.take("E_YAML", error)
             return None
-    source = Source(path, text, findings)
+    source = Source(path, text, findings, traps=traps)
     if source.root is None:
         return None
     head = source.mapping(source.root, HEAD_KEYS, HEAD_REQUIRED, "a stall")

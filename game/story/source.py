@@ -24,7 +24,7 @@ _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 class Source:
     """The file's nodes and lines; every ``get``-like method notes a fault in ``findings`` and returns None for it."""
 
-    def __init__(self, path: Path | str, text: str, findings: Findings) -> None:
+    def __init__(self, path: Path | str, text: str, findings: Findings, *, traps: bool = True) -> None:
         self.path = str(path)
         self.findings = findings
         self.rows = text.split("\n")
@@ -35,7 +35,8 @@ class Source:
             if not self._duplicates(text):
                 findings.take("E_YAML", error)
         else:
-            self._traps(text)
+            if traps:
+                self._traps(text)
 
     # --- the file as a whole ---------------------------------------------------------------------------------
     def _duplicates(self, text: str) -> bool:
