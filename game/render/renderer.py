@@ -1,6 +1,8 @@
-"""The frame graph: bake what stands still, restore the box, skin once, draw the person, show, interface on top."""
+"""The frame graph: bake what stands still, restore the picture, skin once, draw the person, interface on top."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -8,7 +10,7 @@ from numpy.typing import NDArray
 
 from game.face.mesh import DrawList
 from game.render.character_drawing import CharacterDrawing
-from game.render.device import Device, Owner
+from game.render.device import PREMULTIPLIED, Device, Owner
 from game.render.face_painter import FACE_MM, FacePainter, hidden_face
 from game.render.hud import Hud
 from game.render.levels import DEFAULT, Level
@@ -24,11 +26,23 @@ __all__ = ["Renderer"]
 _FACE_AT = (0.0, 1.2, 0.1)  # about where the face is, m
 
 
+@dataclass
+class _Canvas:
+    """The pictures of one size, and what is in them."""
+
+    targets: FrameTargets
+    baked: BakeKey | None = None
+    is_draft: bool = False
+    seen: BakeKey | None = None  # of the last frame
+    turning: bool = False  # the camera moved between the last two frames
+    last_box: Box = (0, 0, 0, 0)  # where the person was
+
+
 class Renderer(Owner):
     """Draws FrameViews of one person at one stall.
 
     ``model`` and ``stall`` may be None where nobody, or nothing, is to be drawn (menus, the bench's floor).
-    ``backdrop`` is (h, w, 3) uint8. ``level`` may be changed between frames (``set_level``).
+    ``backdrop`` is (h, w, 3) uint8, first row at the top. ``level`` may be changed between frames (``set_level``).
     """
 
     def __init__(
@@ -49,16 +63,11 @@ class Renderer(Owner):
         self.hud = self.own(Hud(device, fonts))
         self._hidden_face = hidden_face()
         self._face: DrawList | None = None
-        self._targets: FrameTargets | None = None
+        self._canvas: _Canvas | None = None
         self._character: CharacterDrawing | None = None
         self._painter: FacePainter | None = None
-        self._baked: BakeKey | None = None
         # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
         self.drafts = device.windowed
-        self._is_draft = False
-        self._seen: BakeKey | None = None  # of the last frame
-        self._turning = False  # the camera moved between the last two frames
-        self._last_box: Box = (0, 0, 0, 0)
         self._frames = 0
         self._light: LightBox | None = None  # for which the shadow map was drawn
         self._shown: moderngl.Framebuffer | None = None
@@ -75,11 +84,11 @@ class Renderer(Owner):
 
     def _drop_level(self) -> None:
         self.device.nowhere.use()
-        for part in (self._targets, self._character, self._painter):
+        for part in (self._canvas.targets if self._canvas else None, self._character, self._painter):
             if part is not None:
                 part.release()
-        self._targets = self._character = self._painter = None
-        self._baked = self._light = self._shown = None
+        self._canvas = self._character = self._painter = None
+        self._light = self._shown = None
 
     def release(self) -> None:
         self._drop_level()
@@ -87,42 +96,64 @@ class Renderer(Owner):
 
     def draw(self, view: FrameView) -> None:
         """Draw one frame at the device's size, into its window or, without one, to be read back."""
-        targets = self._ensure_targets()
+        size = self.device.size
+        if self._canvas is None or self._canvas.targets.size != size:
+            if self._canvas is not None:
+                self.device.nowhere.use()
+                self._canvas.targets.release()
+            self._canvas = self._make_canvas(size)
+        self._shown = self._draw(view, self._canvas, self.device.context.screen if self.device.windowed else None)
+
+    def snapshot(self, view: FrameView, size: tuple[int, int]) -> NDArray[np.uint8]:
+        """Draw one picture of any size beside the running frames: (height, width, 3) uint8, first row at the top."""
+        canvas = self._make_canvas(size)
+        self._light = None
+        try:
+            return _pixels(self._draw(view, canvas, None), size)
+        finally:
+            self._light = None
+            self.device.nowhere.use()
+            canvas.targets.release()
+
+    def read_pixels(self) -> NDArray[np.uint8]:
+        """The last frame as (height, width, 3) uint8, first row at the top."""
+        if self._shown is None:
+            raise RuntimeError("nothing has been drawn yet")
+        pixels = _pixels(self._shown, self.device.size)
+        if self.device.windowed:
+            _ = self.device.context.error  # moderngl asks the window for an attachment, which GL minds but obeys
+        return pixels
+
+    def _make_canvas(self, size: tuple[int, int]) -> _Canvas:
+        return _Canvas(FrameTargets(self.device, size, min(self.level.samples, self.device.max_samples)))
+
+    def _draw(self, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None) -> moderngl.Framebuffer:
+        """Draw a frame into the canvas and, if given, the window; returns where it can be read."""
+        targets = canvas.targets
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items)
-        changed = self._last_box
-        if self._bake(key, targets):
+        changed = canvas.last_box
+        if self._bake(key, canvas):
             changed = (0, 0, *targets.size)
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
         if self._character is not None and self._painter is not None:
             self._paint_face(view, self._painter, targets.size)
-            self._last_box = self._draw_character(view, self._character, self._painter, targets)
-            changed = union(changed, self._last_box) if changed[2] else self._last_box
-        self._show(view, targets, changed)
+            canvas.last_box = self._draw_character(view, self._character, self._painter, targets)
+            changed = union(changed, canvas.last_box) if changed[2] else canvas.last_box
         self._frames += 1
+        return self._show(view, targets, changed, window)
 
-    def _bake(self, key: BakeKey, targets: FrameTargets) -> bool:
+    def _bake(self, key: BakeKey, canvas: _Canvas) -> bool:
         """See that the baked picture fits; True if it was drawn."""
-        turned = self._seen is not None and key.camera != self._seen.camera
-        draft = self.drafts and turned and self._turning
-        self._turning, self._seen = turned, key
-        if key == self._baked and (draft or not self._is_draft):
+        turned = canvas.seen is not None and key.camera != canvas.seen.camera
+        draft = self.drafts and turned and canvas.turning
+        canvas.turning, canvas.seen = turned, key
+        if key == canvas.baked and (draft or not canvas.is_draft):
             return False
-        self._scene.bake(key, targets.bake, self.level.line_px, draft=draft)
-        self._baked, self._is_draft = key, draft
+        self._scene.bake(key, canvas.targets.bake, self.level.line_px, draft=draft)
+        canvas.baked, canvas.is_draft = key, draft
         return True
-
-    def _ensure_targets(self) -> FrameTargets:
-        targets = self._targets
-        if targets is None or targets.size != self.device.size:
-            if targets is not None:
-                self.device.nowhere.use()
-                targets.release()
-            samples = min(self.level.samples, self.device.max_samples)
-            self._targets = targets = FrameTargets(self.device, self.device.size, samples)
-            self._baked = None
-        return targets
 
     def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
         tan_half = view.camera.tan_half_height(size[0] / size[1])
@@ -153,7 +184,7 @@ class Renderer(Owner):
     def _draw_shadow_on_table(self, view: FrameView, character: CharacterDrawing, targets: FrameTargets) -> None:
         context = self.device.context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
-        context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        context.blend_func = PREMULTIPLIED
         targets.work.depth_mask = False
         character.shadow_map.use(1)
         targets.bake.dark.texture.use(3)
@@ -161,36 +192,34 @@ class Renderer(Owner):
         receiver.render(moderngl.TRIANGLE_STRIP)
         targets.work.depth_mask = True
 
-    def _show(self, view: FrameView, targets: FrameTargets, changed: Box) -> None:
+    def _show(
+        self, view: FrameView, targets: FrameTargets, changed: Box, window: moderngl.Framebuffer | None
+    ) -> moderngl.Framebuffer:
         context = self.device.context
         picture = targets.work
         if targets.samples:
             copy_box(context, targets.resolved, targets.work, changed)
             picture = targets.resolved
         # The interface must not stay in a picture that the next frame only mends.
-        if self.device.windowed or (targets.samples and view.hud is not None):
-            output = context.screen if self.device.windowed else targets.output
-            if self.device.windowed:
-                output.viewport = (0, 0, *targets.size)
+        if window is not None or (targets.samples and view.hud is not None):
+            output = targets.output if window is None else window
+            if window is not None:
+                window.viewport = (0, 0, *targets.size)
             output.use()
             context.copy_framebuffer(output, picture)
             picture = output
-        self._shown = picture
         if view.hud is not None:
             picture.use()
             self.hud.begin(targets.size)
             view.hud(self.hud)
             self.hud.end()
+        return picture
 
-    def read_pixels(self) -> NDArray[np.uint8]:
-        """The last frame as (height, width, 3) uint8, first row at the top."""
-        if self._shown is None:
-            raise RuntimeError("nothing has been drawn yet")
-        width, height = self.device.size
-        data = self._shown.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
-        if self.device.windowed:
-            _ = self.device.context.error  # moderngl asks the window for an attachment, which GL minds but obeys
-        return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
+
+def _pixels(source: moderngl.Framebuffer, size: tuple[int, int]) -> NDArray[np.uint8]:
+    width, height = size
+    data = source.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
+    return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
 
 
 def _with_shadow(box: Box, size: tuple[int, int]) -> Box:

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from game.core import MissingPart
 from game.face import tessellate
 from game.face.params import face_params
-from game.render import CLOSEUP, LEVELS, Camera, FontSet, FrameView, Renderer, level_named
+from game.render import CLOSEUP, LEVELS, Camera, Device, FontSet, FrameView, Renderer, level_named
 from game.render.bench_floor import BareScene
 
 pytestmark = pytest.mark.gl
@@ -127,7 +128,7 @@ def test_the_person_casts_a_shadow_on_the_table(renderer, view):
     low[:, 1, 3] -= 0.12
     low[:, 2, 3] += 0.35  # the person stands in the middle of the table
     pixels = shot(renderer, replace(view, skin_matrices=low)).astype(int)
-    bake = renderer._targets.bake
+    bake = renderer._canvas.targets.bake
     dark = np.frombuffer(bake.dark.target.read(components=4), np.uint8).reshape(360, 640, 4)[::-1, :, :3]
     still = np.frombuffer(bake.still.read(components=4), np.uint8).reshape(360, 640, 4)[::-1, :, :3]
     differs = np.abs(still.astype(int) - dark).sum(axis=2) > 30
@@ -221,10 +222,29 @@ def test_a_moving_camera_gets_drafts_and_a_resting_one_the_full_picture(renderer
         for step in steps:
             shot(renderer, step)
         arriving = shot(renderer, view)
-        assert renderer._is_draft
+        assert renderer._canvas.is_draft
         resting = shot(renderer, view)
     finally:
         renderer.drafts = False
-    assert not renderer._is_draft
+    assert not renderer._canvas.is_draft
     assert np.array_equal(resting, wanted)
     assert np.abs(arriving.astype(int) - wanted).mean() < 4.0
+
+
+def test_a_snapshot_of_another_size_disturbs_nothing(renderer, view):
+    before = shot(renderer, view)
+    picture = renderer.snapshot(replace(view, camera=CLOSEUP), (320, 400))
+    assert picture.shape == (400, 320, 3)
+    assert picture.std() > 30
+    assert np.array_equal(before, renderer.read_pixels())
+    assert np.array_equal(before, shot(renderer, view))
+
+
+def test_a_machine_without_opengl_is_told_what_to_install_in_one_line(monkeypatch):
+    def fail(**_):
+        raise OSError("libEGL.so\nnot found")
+
+    monkeypatch.setattr("moderngl.create_context", fail)
+    with pytest.raises(MissingPart, match="libegl1 libgl1-mesa-dri") as caught:
+        Device.headless(64, 64)
+    assert "\n" not in str(caught.value)
