@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from game.core.errors import BadInput
 from game.embos.config import PlannerConfig
 from game.embos.library import UnitLibrary
 from game.embos.scores import continuity
@@ -19,6 +20,7 @@ Ints = NDArray[np.intp]
 CHUNK = 64
 """Characters computed together: enough to hide the calls, few enough for the cache."""
 
+_PLACE_BITS = 10
 _STEP = 2.0**-40
 """Differences d closer than this are equal in rank (as in scores.ranks, 1e-12)."""
 
@@ -89,7 +91,7 @@ class PlannerTables:
         np.abs(apart, out=apart)
         d = np.einsum("rk,rkp->rp", emotion, apart)
         d /= total
-        share = rank_share_packed(d, self)
+        share = _rank_share(d, self)
         if self.presence > 0.0:
             shown = np.einsum("rk,kp->rp", emotion, self.exists_t)
             shown *= self.presence / total
@@ -98,30 +100,35 @@ class PlannerTables:
         return np.where(self.real, share, self.constant_state)
 
 
-def rank_share_packed(d: Floats, tables: PlannerTables) -> Floats:
+def _rank_share(d: Floats, tables: PlannerTables) -> Floats:
     """scores.rank_share per layer for (R, P), empty and rest slots last: one integer sort instead of an argsort."""
     rows, width = len(d), tables.width
-    level = (np.minimum(d, 1.0) * (1.0 / _STEP)).astype(np.int64)
+    # Rounded, not cut: values such as ½ are whole steps, and noise must not push them below.
+    level = (np.minimum(d, 1.0) * (1.0 / _STEP) + 0.5).astype(np.int64)
     level += tables.not_real  # beyond every real unit
-    packed = ((level << 10) | tables.place).reshape(rows, -1, width)
+    packed = ((level << _PLACE_BITS) | tables.place).reshape(rows, -1, width)
     packed.sort(axis=-1)
-    level = packed >> 10
+    level = packed >> _PLACE_BITS
     rank = np.zeros(packed.shape, dtype=np.intp)
     np.multiply(level[..., 1:] > level[..., :-1], np.arange(1, width), out=rank[..., 1:])
     np.maximum.accumulate(rank, axis=-1, out=rank)
     share = np.empty(d.size)
-    share[((packed & 1023) + np.arange(0, d.size, width).reshape(rows, -1, 1)).ravel()] = (
-        1.0 - rank / tables.count
-    ).ravel()
+    place = (packed & ((1 << _PLACE_BITS) - 1)) + np.arange(0, d.size, width).reshape(rows, -1, 1)
+    share[place.ravel()] = (1.0 - rank / tables.count).ravel()
     near = 1.0 - d
     near *= share.reshape(rows, -1)
     return near
 
 
 def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
-    """Lay a library out for a planner. -> tables whose arrays are read-only."""
+    """Lay a library out for a planner. -> tables whose arrays are read-only.
+
+    Raises BadInput for more than 1024 units in a layer.
+    """
     by_layer = [library.of_layer(layer) for layer in config.layers]
     width = max(len(units) for units in by_layer)
+    if width > 1 << _PLACE_BITS:
+        raise BadInput("units", expected=f"at most {1 << _PLACE_BITS} in a layer", seen=width)
     layers, slots = len(by_layer), len(by_layer) * width
     unit = np.full(slots, -1, dtype=np.intp)
     follow = np.ones((slots + 1, width))
