@@ -7,11 +7,12 @@ import random
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
-from game.story import ACTS, Chose, Memory, Script, Start, advance, begin, load_script, memory_of, restore, save
+from game.story import ACTS, Chose, Memory, Script, Start, advance, begin, load_script, memory_of, restore, resume, save
 from game.story.chance import pick_weighted, shuffled, uniform
 
 
@@ -287,6 +288,40 @@ def test_broken_saves_name_the_place(tiny, key, value, pointer):
         restore(tiny, data)
     with pytest.raises(BadInput, match="a saved talk"):
         restore(tiny, [data])
+
+
+def test_resume_before_the_first_word_and_after_the_last(tiny):
+    state = restore(tiny, save(begin(tiny, "cup", 1)))
+    same, beat = resume(tiny, state, {})
+    assert (same, beat.lines, beat.choices) == (state, (), ())
+    state, beat = advance(tiny, state, Start(), {})
+    state, beat = advance(tiny, state, Chose("leave", "walked_away"), {})
+    back, again = resume(tiny, restore(tiny, json.loads(json.dumps(save(state)))), {})
+    assert again == beat
+    assert back == state
+
+
+def test_resume_offers_anew_what_an_edit_took_away(tiny):
+    state, _ = advance(tiny, begin(tiny, "cup", 1), Start(), {})
+    data = save(state) | {"offered": [["gone", "gone"]]}
+    back, beat = resume(tiny, restore(tiny, data), {})
+    assert len(beat.choices) == 7
+    after, _ = advance(tiny, back, Chose(beat.choices[0].id), {})
+    assert after.chosen == {beat.choices[0].id}
+
+
+@pytest.mark.parametrize("data", [None, [], {}, {"visits": 1, "seen": "x", "variables": {}}, {"visits": -1}])
+def test_broken_memories_are_refused(data):
+    with pytest.raises(BadInput, match=r"memory\.json"):
+        Memory.from_dict(data, Where("memory.json"))
+
+
+def test_values_may_come_from_numpy(tiny):
+    env = {"trust": np.float64(0.5), "tidying": np.bool_(True), "round": np.int64(2)}
+    _, beat = advance(tiny, begin(tiny, "cup", 1), Start(), env)
+    assert beat.choices
+    with pytest.raises(BadInput, match="ask"):
+        advance(tiny, begin(tiny, "cup", 1), Start(), {"ask": float("nan")})
 
 
 # --- the draw -------------------------------------------------------------------------------------------------
