@@ -139,7 +139,7 @@ def switch(
 def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
     """The row now shown, the transitions' remains included."""
     row, speed = compose(value, state.gate)
-    if (state.age_s < state.span_s).any():
+    if np.count_nonzero(state.age_s < state.span_s):
         ends = np.stack([state.span_s, state.brake_s])
         powers = np.minimum(state.age_s / ends, 1.0)[..., None] ** _POWERS
         curves = np.concatenate([powers[0] @ _VALUE, powers[1] @ _SLOPE], axis=-1)

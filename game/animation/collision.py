@@ -43,11 +43,11 @@ DEEPEST_M = 0.12
 
 BODY_JOINTS = tuple(joint for joint, _, _ in BODY)
 _INVERSE = np.array([np.divide(1.0, r) for _, _, r in BODY], dtype=np.float32)
-_SQUARED_INVERSE = (_INVERSE * _INVERSE)[:, None]
+_SUMS = np.stack([np.ones_like(_INVERSE), _INVERSE * _INVERSE], axis=1)
 _MIDDLE = np.array([np.subtract(_REST[j], c) / r for j, c, r in BODY], dtype=np.float32)[..., None]
 _REACH = np.tile(POINT_RADII - TOLERANCE_M, 2)
 _TALLEST = float(POINT_RADII.max()) + TABLE_CLEARANCE_M
-for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SQUARED_INVERSE, _MIDDLE, _REACH):
+for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SUMS, _MIDDLE, _REACH):
     _array.setflags(write=False)
 
 
@@ -69,8 +69,8 @@ def _distance(maps: Floats, points: Floats) -> tuple[Floats, Floats, Floats]:
     """Points in the unit spheres' frames (n, 6, 3, P), distance and slope (n, 6, P)."""
     at = maps[..., :3] @ points.swapaxes(-1, -2)[:, None] + maps[..., 3:]
     square = at * at
-    norm = np.sqrt(square.sum(axis=2) + np.float32(1e-12))
-    slope = np.sqrt((_SQUARED_INVERSE @ square)[:, :, 0] + np.float32(1e-12))
+    norms = np.sqrt(_SUMS @ square + np.float32(1e-12))
+    norm, slope = norms[:, :, 0], norms[:, :, 1]
     # Quílez' estimate for an ellipsoid; exact on the surface.
     return at, norm * (norm - np.float32(1.0)) / slope, slope
 
@@ -94,7 +94,7 @@ def push_out(maps: Floats, points: Floats) -> Floats:
         weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
         amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
         push += amount.sum(axis=(1, 4)).swapaxes(-1, -2)
-    if ((points[..., 1] < TABLE_TOP_M + _TALLEST) & (points[..., 2] > TABLE_BACK_Z_M - _TALLEST)).any():
+    if points[..., 1].min() < TABLE_TOP_M + _TALLEST:
         up, back = _table(points)
         push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
         push[..., 2] -= back

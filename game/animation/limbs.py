@@ -29,7 +29,10 @@ _HINGE_SHARE = 1.5e-3
 _WAYS = np.array([[-1, 1, 0, 0], [0, -1, 1, 0], [-1, 0, 1, 0], [-1, 0, 0, 1]], dtype=np.float32)
 # v @ _SKEW is the matrix that takes the cross product with v.
 _SKEW = np.array([[0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]], np.float32)
-for _table in (_WAYS, _SKEW):
+# Sums over the last axis as products: a reduction of three numbers costs NumPy three times as much.
+_SUM = np.ones(3, dtype=np.float32)
+_SUM_TO_COLUMN = np.ones((3, 1), dtype=np.float32)
+for _table in (_WAYS, _SKEW, _SUM, _SUM_TO_COLUMN):
     _table.setflags(write=False)
 
 
@@ -68,8 +71,9 @@ def solve_limbs(limbs: Limbs, points: Floats, hinge: Floats) -> Floats:
     """
     n, _, k, _ = points.shape
     ways = (_WAYS @ points.reshape(n, 4, 3 * k)).reshape(n, 4, k, 3)
-    reach = np.sqrt((ways[:, 2:] * ways[:, 2:]).sum(-1)) + np.float32(1e-6)
-    along = ways[:, 2:] / reach[..., None]
+    far = ways[:, 2:]
+    reach = np.sqrt((far * far) @ _SUM) + np.float32(1e-6)
+    along = far / reach[..., None]
     # Both reaches as the law of cosines sees them; the wanted one is clamped.
     over = np.maximum(reach[:, 1] - limbs.knee, np.float32(0.0)) / limbs.room
     wanted = np.minimum(reach[:, 1], limbs.knee) - limbs.room * np.expm1(-over)
@@ -82,15 +86,15 @@ def solve_limbs(limbs: Limbs, points: Floats, hinge: Floats) -> Floats:
     turn = turn[:, :2] * np.float32(0.5)
     crosses = (along[:, 0] @ _SKEW).reshape(n, k, 3, 3) @ _columns(ways[:, 0], along[:, 1])
     normal = crosses[..., 0] + np.float32(_HINGE_SHARE) * hinge
-    normal /= np.sqrt((normal * normal).sum(-1, keepdims=True)) + np.float32(1e-9)
+    normal /= np.sqrt((normal * normal) @ _SUM_TO_COLUMN) + np.float32(1e-9)
     opened = np.empty((n, 2, k, 4), dtype=np.float32)
     np.multiply(normal[:, None], np.sin(turn)[..., None], out=opened[..., :3])
     np.cos(turn, out=opened[..., 3])
     # Opening leaves the end on the way where it was: what is left is to swing that way to the wanted one.
     swing = np.empty((n, k, 4), dtype=np.float32)
     swing[..., :3] = crosses[..., 1]
-    np.add(1.0, (along[:, 0] * along[:, 1]).sum(-1), out=swing[..., 3])
-    np.maximum(swing[..., 3], np.float32(1e-4), out=swing[..., 3])
+    # Just above 1: opposite directions leave a rotation to normalise.
+    np.add((along[:, 0] * along[:, 1]) @ _SUM, np.float32(1.0001), out=swing[..., 3])
     return bl.multiply(bl.normalize(swing)[:, None], opened)
 
 

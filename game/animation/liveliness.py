@@ -226,7 +226,7 @@ def advance_life(
     """
     timers = state.timers + (shares @ config.per_second) * dt_s
     dart, counts = state.dart, state.counts
-    if gaze.leap.any():
+    if np.count_nonzero(gaze.leap):
         timers[:, _BLINK_LEFT] = np.where(gaze.leap, np.minimum(timers[:, _BLINK_LEFT], 0.0), timers[:, _BLINK_LEFT])
     if timers[:, _DART_LEFT : _BLINK_LEFT + 1].min() <= 0.0:
         dart, counts = _draw(config, state, shares, timers)

@@ -161,14 +161,14 @@ class Performer:
         fresh[:, self._posture] = changed[:, self._posture]
         for layer in held:
             fresh[:, layer] = changed[:, layer]
-        if fresh.any():
+        if np.count_nonzero(fresh):
             seconds, pick = decisions.duration_s, decisions.variant_pick
             play = playback.begin(self.bank, play, fresh, unit, seconds, weights, pick, self._posture, dt_s)
         drift_to = _NEUTRAL[None] if held else signal.emotion
         value, play, jumped = playback.advance_playback(self.bank, play, drift_to, self._posture, dt_s)
         blend = state.blend
         events = fresh | jumped
-        if events.any():
+        if np.count_nonzero(events):
             base_s = self.life.transition_s * (emotion @ self.life.tempo)
             blend = blending.switch(
                 self.bank, blend, play, events, value, base_s, state.contact_frames, self._posture, dt_s

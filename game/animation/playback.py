@@ -160,17 +160,15 @@ def _drifted(bank: MotionBank, state: Playback, emotion: Floats, posture_layer: 
 
 def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats]:
     """Frame (n, L) in a unit that plays once, frames per second there, and the repeats made so far."""
-    before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times = np.moveaxis(
-        state.timing, -1, 0
-    )
+    before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times = state.timing.transpose(2, 0, 1)
     past = elapsed_s - before
     at = np.minimum(elapsed_s, before) * lead + np.maximum(past, np.float32(0.0)) * after
     rate = np.where(past < 0.0, lead, after)
     lap = state.lap
-    if times.any():
+    if np.count_nonzero(times):
         lap = np.clip(np.floor((at - loop_first) / np.maximum(loop_frames, 1.0)), 0.0, times)
         at = at - lap * loop_frames
-    if held.any():
+    if np.count_nonzero(held):
         length = np.maximum(hold_length, 1e-6)
         u = np.float32(2.0 * np.pi) * np.clip((at - hold_first) / length, 0.0, 1.0)
         at = at - held * (u - np.sin(u)) * np.float32(0.5 / np.pi)

@@ -181,7 +181,7 @@ def advance_springs(springs: SpringSet, state: SpringState, model: Floats, dt_s:
             grip = steps * (1.0 - kept) / np.maximum(1.0 - depth.keep, 1e-4) * VRM_STEP_S
             new = old + speed[:, depth.where] * (kept * dt_s) + (axis * depth.pull + depth.weight) * grip
             new = _reach(head, new, depth.length)
-            if len(start):
+            if depth.meets.any():
                 new = _leave(springs, depth, head, new, start, way)
             speed[:, depth.where] = (new - old) / dt_s
         elif state.known:

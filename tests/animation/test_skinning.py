@@ -77,7 +77,7 @@ def make_rig(*, springs: bool = False, radius: float = 0.05, colliders: bool = T
         np.array(rest),
         bind,
         chains=(chain,) if springs else (),
-        colliders=balls if springs else (),
+        colliders=balls if springs and colliders else (),
     )
 
 

@@ -1,0 +1,203 @@
+"""Speed of the pose: for 1, 100 and 1000 characters, beside a NumPy floor for the same work.
+
+The floor is BENCH.md's: three samples, a masked blend of three layers, local to model space, skinning matrices of 60
+joints; alone with matrices joint by joint, in a crowd with every matrix element as an array over the characters. It
+keeps no state and mixes no variants. "same work" is that part of ours on the shipped units (with up to seven variants
+mixed); "everything" adds transitions, contacts by IK, collisions, breath, gaze and blinking.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from game.animation import GAZE_CUSTOMER, Performer, PerformerState, PerformSignal, Pose, Rig, SpringChain
+from game.animation import bilinear as bl
+from game.animation import channels as ch
+from game.animation.blending import compose
+from game.animation.playback import advance_playback
+from game.app.bench_rows import Row, row
+from game.core.emotion_space import emotion_vector
+from game.core.humanoid import REFERENCE
+from game.core.paths import ASSETS
+from game.embos import Planner, PlannerSignal, UnitLibrary
+
+__all__ = ["rows"]
+
+Floats = NDArray[np.floating[Any]]
+
+JOINTS = 60
+_TICK_S = 1.0 / 30.0
+_COUNTS = (1, 100, 1000)
+_WANTED_SAME = {1: "≤ 1.3× floor", 100: "≤ 8.4 µs", 1000: "≤ 5.2 µs"}
+_WANTED_ALL = {1: "≤ 150 µs", 100: "", 1000: ""}
+_CROWD_FROM = 16
+
+
+def rows() -> list[Row]:
+    """Microseconds per character: median, least and ratio to the floor run in turns with it."""
+    library = UnitLibrary.load(ASSETS / "motion" / "units.yaml")
+    performer = Performer(library)
+    planner = Planner(library)
+    plain, sprung = _rig(springs=False), _rig(springs=True)
+    table: list[Row] = []
+    for n in _COUNTS:
+        state, decisions, signal, pose = _stand(performer, planner, n)
+        floor, ours, everything = _alternate(
+            [
+                _floor(performer, n),
+                partial(_same_work, performer, plain, state, signal),
+                partial(performer.advance, state, decisions, signal, _TICK_S),
+            ],
+            n,
+        )
+        least = min(floor)
+        who = "1 character" if n == 1 else f"{n} characters"
+        table.append(row(f"floor, {who}", floor, unit="µs"))
+        table.append(row(f"same work, {who}", ours, unit="µs", floor=least, wanted=_WANTED_SAME[n]))
+        table.append(row(f"everything, {who}", everything, unit="µs", floor=least, wanted=_WANTED_ALL[n]))
+        if n == 1:
+            springs = sprung.start(1)
+            springs, _ = sprung.advance(springs, pose, _TICK_S)
+            skin, hair = _alternate(
+                [
+                    partial(plain.advance, plain.start(1), pose, _TICK_S),
+                    partial(sprung.advance, springs, pose, _TICK_S),
+                ],
+                1,
+            )
+            table.append(row("skinning matrices alone, 1 character", skin, unit="µs", floor=least))
+            table.append(row("the same with 12 spring pieces, 1 character", hair, unit="µs", floor=least))
+    return table
+
+
+def _alternate(works: Sequence[Callable[[], object]], n: int) -> list[list[float]]:
+    """Times in µs per character, the works taking turns so that a busy machine slows all alike."""
+    inner, turns = (20, 40) if n == 1 else (2, 12) if n == 100 else (1, 7)
+    times: list[list[float]] = [[] for _ in works]
+    for work in works:
+        work()
+    for _ in range(turns):
+        for taken, work in zip(times, works, strict=True):
+            begin = time.perf_counter()
+            for _ in range(inner):
+                work()
+            taken.append((time.perf_counter() - begin) * 1e6 / (inner * n))
+    return times
+
+
+def _stand(performer: Performer, planner: Planner, n: int) -> tuple[PerformerState, Any, PerformSignal, Pose]:
+    """Two seconds into a talk, a gesture and a transition on the way."""
+    felt = np.tile(emotion_vector({"joy": 0.5, "surprise": 0.2}), (n, 1))
+    words = np.zeros((n, len(performer.library.gestures)))
+    signal = PerformSignal(felt, np.tile(GAZE_CUSTOMER, (n, 1)), np.ones(n))
+    plan, state = planner.start(n, 1), performer.start(n, 1)
+    for tick in range(60):
+        said = words.copy()
+        said[:, 0] = float(50 <= tick < 55)
+        plan, decisions = planner.advance(plan, PlannerSignal(felt, said, tick * _TICK_S), _TICK_S)
+        state, pose = performer.advance(state, decisions, signal, _TICK_S)
+    _, decisions = planner.advance(plan, PlannerSignal(felt, words, 2.0), _TICK_S)
+    return state, decisions, signal, pose
+
+
+def _same_work(performer: Performer, rig: Rig, state: PerformerState, signal: PerformSignal) -> object:
+    value, _, _ = advance_playback(performer.bank, state.playback, signal.emotion, 0, _TICK_S)
+    mixed, _ = compose(value, state.blend.gate)
+    rotation = bl.normalize(mixed[:, ch.ROTATION].reshape(len(mixed), ch.JOINTS, 4))
+    pose = Pose(rotation, mixed[:, ch.ROOT], state.gaze.eye, state.gaze.eye, state.gaze.eye)
+    return rig.advance(rig.start(len(mixed)), pose, _TICK_S)
+
+
+def _rig(*, springs: bool) -> Rig:
+    """REFERENCE with forearm twists and strands of hair: 60 joints."""
+    names, parents, rest = list(REFERENCE.names), list(REFERENCE.parents), list(REFERENCE.rest_translation)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        names.append(f"{side}ForearmTwist")
+        parents.append(REFERENCE.index[f"{side}LowerArm"])
+        rest.append(np.array([0.1 * sign, 0.0, 0.0]))
+    chains = []
+    for strand in range(6):
+        joints: list[int] = []
+        for piece in range(3 if strand else 2):
+            parents.append(joints[-1] if joints else REFERENCE.index["head"])
+            joints.append(len(names))
+            names.append(f"hair{strand}_{piece}")
+            rest.append(np.array([0.03 * strand, -0.06, -0.02]))
+        pieces = len(joints) - 1
+        down = ((0.0, -1.0, 0.0),) * pieces
+        chains.append(
+            SpringChain(tuple(joints), (1.0,) * pieces, (0.2,) * pieces, down, (0.4,) * pieces, (0.01,) * pieces)
+        )
+    assert len(names) == JOINTS
+    return Rig.from_arrays(names, np.array(parents), np.array(rest), chains=chains if springs else ())
+
+
+def _floor(performer: Performer, n: int) -> Callable[[], object]:
+    """BENCH.md's work in the fewest array calls, on this performer's rows."""
+    rng = np.random.default_rng(0)
+    skeleton = _rig(springs=False).skeleton
+    order = np.arange(JOINTS) % ch.JOINTS
+    clip = performer.bank.rows[2:402, ch.ROTATION].reshape(-1, ch.JOINTS, 4)[:, order]
+    frame = rng.integers(0, 390, (n, 3))
+    part = rng.random((n, 3)).astype(np.float32)
+    mask = (rng.random((3, JOINTS)) < 0.4).astype(np.float32)
+    mask[0] = 1.0
+    bind = np.linalg.inv(skeleton.rest_model).astype(np.float32)
+    if n < _CROWD_FROM:
+        return lambda: _floor_alone(skeleton, clip, frame, part, mask, bind)
+    pieces = [slice(i, min(i + 64, n)) for i in range(0, n, 64)]
+    by_joint = np.ascontiguousarray(clip.transpose(2, 1, 0))
+    return lambda: [_floor_crowd(skeleton, by_joint, frame[p], part[p], mask, bind) for p in pieces]
+
+
+def _floor_alone(
+    skeleton: Any, clip: Floats, frame: NDArray[np.intp], part: Floats, mask: Floats, bind: Floats
+) -> Floats:
+    a, b = clip[frame], clip[frame + 1]
+    samples = a + (b - a) * part[..., None, None]
+    q = samples[:, 0]
+    for layer in (1, 2):
+        q = q + (samples[:, layer] - q) * mask[layer][:, None]
+    local = bl.affine(bl.normalize(q))
+    local[..., :3, 3] = skeleton.rest_translation
+    for level in skeleton.levels[1:]:
+        local[:, level] = local[:, skeleton.parents[level]] @ local[:, level]
+    return np.asarray(local @ bind)
+
+
+def _floor_crowd(
+    skeleton: Any, clip: Floats, frame: NDArray[np.intp], part: Floats, mask: Floats, bind: Floats
+) -> Floats:
+    q: Any = None
+    for layer in range(3):
+        a, b = clip.take(frame[:, layer], axis=2), clip.take(frame[:, layer] + 1, axis=2)
+        sample = a + (b - a) * part[:, layer]
+        q = sample if q is None else q + (sample - q) * mask[layer][:, None]
+    x, y, z, w = q / np.sqrt((q * q).sum(axis=0))
+    turn = np.empty((3, 3, *x.shape), dtype=np.float32)
+    turn[0, 0], turn[0, 1], turn[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
+    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
+    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
+    place = np.empty((3, *x.shape), dtype=np.float32)
+    shift = skeleton.rest_translation.T.astype(np.float32)[..., None]
+    place[:] = shift
+    for level in skeleton.levels[1:]:
+        above, here = turn[:, :, skeleton.parents[level]], turn[:, :, level]
+        product, moved = above[:, 0, None] * here[None, 0], above[:, 0] * shift[0, level]
+        for k in (1, 2):
+            product += above[:, k, None] * here[None, k]
+            moved += above[:, k] * shift[k, level]
+        turn[:, :, level] = product
+        place[:, level] = place[:, skeleton.parents[level]] + moved
+    columns = bind.transpose(1, 2, 0)[..., None]
+    skin = turn[:, 0, None] * columns[None, 0]
+    for k in (1, 2):
+        skin += turn[:, k, None] * columns[None, k]
+    skin[:, 3] += place
+    return np.asarray(skin)
