@@ -20,6 +20,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "film": ("game.app.film", "draw a strip or a sequence of pictures without a display"),
     "inspect": ("game.app.inspect", "show what is in a BVH, glTF or VRM file"),
     "analyse": ("game.app.analyse", "turn annotated takes into motion units"),
+    "retarget": ("game.app.retarget", "bring anyone's motion onto the project's skeleton"),
     "face": ("game.app.face", "propose, rate, fit and author faces"),
     "lint": ("game.app.lint", "check dialogue scripts"),
     "bench": ("game.app.bench", "measure speed against floors run beside it"),
