@@ -101,7 +101,8 @@ class TalkState:
 
 def _rng(seed: int, stream: str, counter: int) -> np.random.Generator:
     """A generator of its own for each purpose and round: what one stage draws never shifts another's."""
-    return np.random.default_rng([seed & 0xFFFFFFFF, sum(ord(c) << (8 * i) for i, c in enumerate(stream[:4])), counter])
+    name = int.from_bytes(stream.encode("ascii")[:4], "big")
+    return np.random.Generator(np.random.Philox(key=(seed & 0xFFFFFFFF) << 64 | name << 32 | counter))
 
 
 def ask_money(list_price: int, ask: float) -> int:
