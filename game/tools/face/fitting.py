@@ -224,7 +224,7 @@ def _regress(whole: WholeFaces, path: Path) -> tuple[AxisFit, AxisFit]:
 def _weights(whole: WholeFaces) -> Floats:
     """Weights (4, 2) for the game: least squares with none below 0, for a negative one has no meaning in the model."""
     columns = [nnls(whole.part_mean[:, :, axis], whole.mean[:, axis])[0] for axis in (0, 1)]
-    return np.round(np.clip(np.stack(columns, axis=-1), 0.0, 2.0), 4)
+    return np.asarray(np.clip(np.stack(columns, axis=-1), 0.0, 2.0).round(4), dtype=np.float64)
 
 
 def _hold_out(whole: WholeFaces, share: float, seed: int, path: Path) -> HeldOut | None:

@@ -1,4 +1,4 @@
-"""Pictures of a fit: part Gaussians as ellipses, weights with their intervals, predicted against rated, simulated error.
+"""Pictures of a fit: part Gaussians as ellipses, weights with intervals, predicted against rated, simulated error.
 
 Needs matplotlib (the `reports` extra), imported only here and only when something is plotted.
 """
@@ -49,7 +49,9 @@ def _save(folder: Path, name: str, figure: Figure) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(path)
     except OSError as error:
-        raise BadInput("plot", where=Where(path), expected="a folder that can be written", seen=error.strerror) from None
+        raise BadInput(
+            "plot", where=Where(path), expected="a folder that can be written", seen=error.strerror
+        ) from None
     return path
 
 
@@ -118,7 +120,7 @@ def _weights(fit: FaceFit, model: FaceModel) -> Figure | None:
         axes.axhline(0, color=FAINT, lw=0.8)
         axes.bar(place, found.weight, 0.55, color=BLUE, alpha=0.75, label="fitted, 95 % interval")
         axes.errorbar(place, found.weight, yerr=margin, fmt="none", ecolor=INK, capsize=5)
-        axes.plot(place, model.weights.value[:, j], "D", color=RED, ms=7, label="in use (reported or assumed)")
+        axes.plot(place + 0.38, model.weights.value[:, j], "<", color=RED, ms=8, label="in use (reported or assumed)")
         top = float(np.maximum(found.interval[:, 1], model.weights.value[:, j]).max())
         for i, p in enumerate(found.p_weight):
             text = f"{found.weight[i]:.2f}\np {'< .001' if p < 0.001 else f'= {p:.3f}'}"
@@ -126,7 +128,7 @@ def _weights(fit: FaceFit, model: FaceModel) -> Figure | None:
         axes.set_xticks(place, REGIONS)
         axes.set(title=f"{axis}: R² = {found.r_squared:.3f} ({found.faces} faces)", ylabel="weight" if j == 0 else "")
         axes.set_ylim(min(0.0, float(found.interval.min()) - 0.05), top + 0.28)
-    axes.legend(loc="lower right", fontsize=9)
+    axes.legend(loc="upper center", fontsize=9)
     figure.suptitle(f"Influence of each region; {_label(fit)}")
     return figure
 

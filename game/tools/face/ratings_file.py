@@ -94,7 +94,7 @@ def _rating(row: list[str], parts: Parts, where: Where, line: int) -> Rating:
 
 
 def read_ratings(path: Path, parts: Parts) -> list[Rating]:
-    """All ratings of a file that count, in its order. Raises BadInput with file:line for the first row that is wrong."""
+    """All ratings of a file that count, in its order. Raises BadInput with file:line for the first wrong row."""
     return _parse(decode_utf8(read_bytes(path, max_bytes=MAX_BYTES, what="ratings file"), path), path, parts)
 
 

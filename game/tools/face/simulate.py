@@ -51,7 +51,9 @@ def first_parts(parts: Parts, count: int) -> Parts:
     """The same parts cut down to the first ``count`` of each region."""
 
     def cut(region: Region) -> Region:
-        arrays = {name: getattr(region, name)[:count] for name in ("shape", "mean", "covariance", "affinity", "strength")}
+        arrays = {
+            name: getattr(region, name)[:count] for name in ("shape", "mean", "covariance", "affinity", "strength")
+        }
         return replace(region, names=region.names[:count], labels=region.labels[:count], **arrays)
 
     return replace(parts, regions=tuple(cut(region) for region in parts.regions))

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from game.core import BadInput, Where
 from game.face import REGIONS, Face, Parts, load_expressions, load_parts, load_weights
@@ -21,7 +22,9 @@ from game.tools.face.fitting import FaceFit, PartFit
 __all__ = ["NEW_EXPRESSIONS", "add_expression", "check_name", "with_gaussians", "with_weights", "write_checked"]
 
 MAX_BYTES = 2_000_000
-NEW_EXPRESSIONS = "# Named expressions for the dialogue (`face: smirk`): one part per region.\nversion: 1\nexpressions:\n"
+NEW_EXPRESSIONS = (
+    "# Named expressions for the dialogue (`face: smirk`): one part per region.\nversion: 1\nexpressions:\n"
+)
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 _MARK = re.compile(r"\s*# rated by \d+$")
 
@@ -84,7 +87,7 @@ def _number(value: float) -> str:
     return f"{value + 0.0:.4f}".rstrip("0").rstrip(".") if abs(value) >= 5e-5 else "0.0"
 
 
-def _pair(values: Sequence[float]) -> str:
+def _pair(values: NDArray[np.float64]) -> str:
     return f"[{_number(float(values[0]))}, {_number(float(values[1]))}]"
 
 
