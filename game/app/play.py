@@ -246,6 +246,8 @@ def run(args: argparse.Namespace) -> int:
 def _need_display() -> None:
     """Start SDL's video. Raises MissingPart where there is no screen (SDL would quietly draw into nothing)."""
     nowhere = MissingPart("no display (no X11 or Wayland session found); start a desktop session, or xvfb-run")
+    # Windows would otherwise blow up a small picture on a dense screen.
+    os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
     asked = os.environ.get("SDL_VIDEODRIVER")
     if sys.platform.startswith("linux") and not asked and not {"DISPLAY", "WAYLAND_DISPLAY"} & set(os.environ):
         raise nowhere
