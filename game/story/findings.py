@@ -9,7 +9,7 @@ from typing import Any
 from game.core.errors import BadInput, Where
 from game.formats.yaml_source import nearest
 
-__all__ = ["CODES", "Finding", "Findings", "did_you_mean"]
+__all__ = ["CODES", "Finding", "Findings"]
 
 # Stable codes. E: the script cannot be used. W: it plays, but not as it should. I: worth a look.
 CODES: dict[str, str] = {
@@ -59,6 +59,9 @@ CODES: dict[str, str] = {
 }
 
 
+_HINTED = 200
+
+
 @dataclass(frozen=True)
 class Finding:
     """One finding. ``str()`` is its one line."""
@@ -95,13 +98,28 @@ class Findings:
 
     def __init__(self) -> None:
         self.all: list[Finding] = []
+        self._known: set[tuple[str, str, str]] = set()
 
     def add(self, code: str, where: Where, message: str, hint: str | None = None) -> None:
         """Note one finding; the same one at the same place is noted once."""
         assert code in CODES, code
-        finding = Finding(code, where, message, hint)
-        if finding not in self.all:
-            self.all.append(finding)
+        key = (code, str(where), message)
+        if key not in self._known:
+            self._known.add(key)
+            self.all.append(Finding(code, where, message, hint))
+
+    def hint(self, name: str, known: Iterable[str]) -> str | None:
+        """A hint: the nearest known name, or all of them where none is near and they are few.
+
+        A file with very many faults gets none for the later ones: looking for likeness is slow.
+        """
+        if len(self.all) > _HINTED:
+            return None
+        names = list(known)
+        close = nearest(name, names)
+        if close:
+            return f"did you mean {close!r}?"
+        return f"known: {', '.join(names)}" if 0 < len(names) <= 12 else "none is near"
 
     def take(self, code: str, error: BadInput) -> None:
         """Note a refused value of the YAML reader."""
@@ -119,12 +137,3 @@ class Findings:
     def ordered(self) -> list[Finding]:
         """By file and place."""
         return sorted(self.all, key=lambda f: (f.where.path, f.where.line or 0, f.where.col or 0, f.code))
-
-
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """A hint: the nearest known name, or all of them where none is near and they are few."""
-    names = list(known)
-    close = nearest(name, names)
-    if close:
-        return f"did you mean {close!r}?"
-    return f"known: {', '.join(names)}" if 0 < len(names) <= 12 else "none is near"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from game.core.emotion_space import EMOTIONS, SIX
 from game.formats.yaml_source import Node
 from game.story.expressions import Expression, ExpressionError, Names, compile_expression
-from game.story.findings import Findings, did_you_mean
+from game.story.findings import Findings
 from game.story.model import BACK, HOME, Branch, ChoiceDef, Currency, EffectDef, LineDef, SayDef, Speaker, Variable
 from game.story.source import Source
 from game.story.text import LANGUAGES, ROW_CHARS, ROWS_PER_BOX, Text, fill, slots, wrap
@@ -72,7 +72,7 @@ class Parts:
                 self.findings.add("E_UNKNOWN_NAME", place(offset), f"a lone {name}", "names stand in {braces}")
             elif name not in allowed:
                 self.findings.add(
-                    "E_UNKNOWN_NAME", place(offset), f"no name {name!r} to fill in", did_you_mean(name, allowed)
+                    "E_UNKNOWN_NAME", place(offset), f"no name {name!r} to fill in", self.findings.hint(name, allowed)
                 )
 
     def _check_length(self, node: Node, value: str, language: str, rows: int) -> None:
@@ -116,7 +116,7 @@ class Parts:
                 if known and constant not in known:
                     code = "E_UNKNOWN_ITEM" if name == "item" else "W_UNKNOWN_VALUE"
                     message = f"{name} is never {constant!r}"
-                    self.findings.add(code, expression.where, message, did_you_mean(constant, known))
+                    self.findings.add(code, expression.where, message, self.findings.hint(constant, known))
 
     def effects(self, node: Node | None) -> tuple[EffectDef, ...]:
         """``set: {name: expression}``."""
@@ -124,7 +124,7 @@ class Parts:
         for key, value in self.source.entries(node):
             name = str(key.value)
             if name not in self.variables:
-                hint = did_you_mean(name, self.variables)
+                hint = self.findings.hint(name, self.variables)
                 if name in ENV:
                     hint = "this one is set by the game"
                 self.findings.add("E_UNKNOWN_NAME", key.where, f"no variable {name!r} to set", hint)
@@ -140,7 +140,7 @@ class Parts:
         for key, value in self.source.entries(node):
             name = str(key.value)
             if name not in SIX:
-                hint = "neutral is what is left" if name in EMOTIONS else did_you_mean(name, SIX)
+                hint = "neutral is what is left" if name in EMOTIONS else self.findings.hint(name, SIX)
                 self.findings.add("E_UNKNOWN_EMOTION", key.where, f"unknown emotion {name!r}", hint)
                 continue
             amount = self.source.number(value, -1.0, 1.0)

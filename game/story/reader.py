@@ -16,7 +16,7 @@ from game.formats.yaml_source import Node, load_yaml
 from game.story.acts import ActTable, load_acts
 from game.story.checks import check_structure
 from game.story.expressions import Names
-from game.story.findings import Findings, did_you_mean
+from game.story.findings import Findings
 from game.story.model import (
     ChoiceDef,
     Currency,
@@ -116,7 +116,7 @@ def _surroundings(node: Node | None, source: Source, path: Path, findings: Findi
         if name in known:
             findings.add("E_UNKNOWN_PERSON", node.where, f"{name!r} cannot be used: {error.message}")
         else:
-            findings.add("E_UNKNOWN_PERSON", node.where, f"no shopkeeper {name!r}", did_you_mean(name, known))
+            findings.add("E_UNKNOWN_PERSON", node.where, f"no shopkeeper {name!r}", findings.hint(name, known))
         return None
 
 
@@ -277,7 +277,7 @@ class _Reader:
             kind = str(key.value)
             if kind not in OUTCOMES:
                 self.findings.add(
-                    "E_UNKNOWN_OUTCOME", key.where, f"unknown outcome {kind!r}", did_you_mean(kind, OUTCOMES)
+                    "E_UNKNOWN_OUTCOME", key.where, f"unknown outcome {kind!r}", self.findings.hint(kind, OUTCOMES)
                 )
                 continue
             target = self.source.one_of(value, self.node_keys, "E_MISSING_TARGET", "node")

@@ -11,7 +11,7 @@ import yaml
 
 from game.core.errors import BadInput, Where
 from game.formats.yaml_source import Node, parse_yaml
-from game.story.findings import Findings, did_you_mean
+from game.story.findings import Findings
 
 __all__ = ["ID", "Source"]
 
@@ -123,7 +123,10 @@ class Source:
                 if value.kind != "null":
                     out[name] = value
             else:
-                self.findings.add("E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", did_you_mean(name, allowed))
+                hint = self.findings.hint(name, allowed)
+                self.findings.add("E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", hint)
+                    "E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", self.findings.hint(name, allowed)
+                )
         for name in required:
             if name not in out:
                 code = "E_MISSING_ID" if name == "id" else "E_MISSING_KEY"
@@ -185,7 +188,7 @@ class Source:
         names = list(known)
         if name in names:
             return name
-        self.findings.add(code, node.where, f"unknown {what} {name!r}", did_you_mean(name, names))
+        self.findings.add(code, node.where, f"unknown {what} {name!r}", self.findings.hint(name, names))
         return None
 
     def _try(self, read: Callable[[], Any]) -> Any:
