@@ -18,6 +18,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "autoplay": ("game.app.autoplay", "play many games without a window, with a policy, into a log"),
     "snapshot": ("game.app.snapshot", "draw one picture without a display"),
     "film": ("game.app.film", "draw a strip or a sequence of pictures without a display"),
+    "perform": ("game.app.perform", "let one body live in one feeling: every start with its reason, and shares"),
     "inspect": ("game.app.inspect", "show what is in a BVH, glTF or VRM file"),
     "analyse": ("game.app.analyse", "turn annotated takes into motion units"),
     "retarget": ("game.app.retarget", "bring anyone's motion onto the project's skeleton"),
