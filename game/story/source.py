@@ -125,8 +125,6 @@ class Source:
             else:
                 hint = self.findings.hint(name, allowed)
                 self.findings.add("E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", hint)
-                    "E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", self.findings.hint(name, allowed)
-                )
         for name in required:
             if name not in out:
                 code = "E_MISSING_ID" if name == "id" else "E_MISSING_KEY"
