@@ -95,7 +95,7 @@ def read_source(clip: Clip, joints: JointMap, fps: float, path: str = "motion") 
             "motion", where=where, expected="finite numbers", seen=f"NaN in {len(bad)} frames, first {bad[0]}"
         )
     last_s = (len(clip) - 1) * clip.frame_time_s
-    count = max(int(np.floor(last_s * fps + 1e-6)) + 1, _LEAST_FRAMES)
+    count = max(int(np.floor(last_s * fps + 1e-2)) + 1, _LEAST_FRAMES)
     rotation, translation = clip.sample(np.arange(count) / fps)
     position, turn = clip.skeleton.to_model(rotation, translation)
     raw = Source(clip.skeleton, joints, position, turn, 0.0, 1.0)
