@@ -6,19 +6,18 @@ array calls; it keeps no state, starts nothing and explains nothing.
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from game.app.bench_rows import Row, row
 from game.core.emotion_space import with_neutral
 from game.core.humanoid import BODY_PARTS
 from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary
 
-__all__ = ["PlannerRow", "made_up_library", "run"]
+__all__ = ["made_up_library", "rows"]
 
 _PER_LAYER = 40
 _CROWD_LOOK_S = 0.1
@@ -26,26 +25,6 @@ _HALF_LIFE_S = 8.0
 _TICK_S = 1.0 / 30.0
 _NEW_FEELING_S = 10.0
 """Every so often each character is given a new emotion to drift to."""
-
-
-@dataclass(frozen=True)
-class PlannerRow:
-    """ns per character and tick.
-
-    look_s: as PlannerConfig, 0: every tick. tick: with emotions that drift all the time and words that come now
-    and then (mean, median, least over ticks); judged: eq. 1 computed for every character; felt: φ_state computed
-    for every character; floor: see above.
-    """
-
-    characters: int
-    look_s: float
-    tick_mean_ns: float
-    tick_median_ns: float
-    tick_least_ns: float
-    judged_ns: float
-    felt_ns: float
-    floor_ns: float
-    tick_to_floor: float
 
 
 def made_up_library(seed: int, per_layer: int = _PER_LAYER) -> UnitLibrary:
@@ -70,25 +49,20 @@ def made_up_library(seed: int, per_layer: int = _PER_LAYER) -> UnitLibrary:
     return UnitLibrary(units)
 
 
-def run(as_json: bool, seed: int = 1, counts: tuple[int, ...] = (1, 100, 1000, 10_000)) -> list[PlannerRow]:
-    """Measure, print (a table or JSON), return the rows."""
+def rows(seed: int = 1, counts: tuple[int, ...] = (1, 100, 1000, 10_000)) -> list[Row]:
+    """Microseconds per character and tick, and the floor measured beside each."""
     library = made_up_library(seed)
     hero, crowd = Planner(library), Planner(library, PlannerConfig(look_s=_CROWD_LOOK_S))
-    rows = [_measure(planner, n, seed) for planner in (hero, crowd) for n in counts if planner is hero or n >= 100]
-    if as_json:
-        print(json.dumps({"planner": [asdict(row) for row in rows]}))
-        return rows
-    print("planner, 3 layers × 40 units, ns per character and tick (tick: emotions drifting)")
-    print(
-        f"{'characters':>10} {'mean':>9} {'median':>9} {'least':>9} {'judged':>9} {'felt':>9} {'floor':>9} {'ratio':>6}"
-    )
-    for r in rows:
-        times = (r.tick_mean_ns, r.tick_median_ns, r.tick_least_ns, r.judged_ns, r.felt_ns, r.floor_ns)
-        print(f"{r.characters:>10} " + " ".join(f"{t:>9.0f}" for t in times) + f" {r.tick_to_floor:>6.2f}")
-    return rows
+    result: list[Row] = []
+    for n in counts:
+        result += _measure(hero, n, seed, "every tick")
+        if n >= 100:
+            result += _measure(crowd, n, seed, f"looking every {_CROWD_LOOK_S:g} s")[:1]
+    return result
 
 
-def _measure(planner: Planner, n: int, seed: int) -> PlannerRow:
+def _measure(planner: Planner, n: int, seed: int, how: str) -> list[Row]:
+    """A tick with emotions that drift all the time and words now and then; eq. 1 computed for every character."""
     rng = np.random.default_rng(seed)
     ticks = int(np.clip(600_000 // n, 90, 1800))
     state = planner.start(n, seed)
@@ -107,25 +81,17 @@ def _measure(planner: Planner, n: int, seed: int) -> PlannerRow:
         begin = time.perf_counter_ns()
         state, _ = planner.advance(state, signal)
         times.append(time.perf_counter_ns() - begin)
-    settled = np.array(times[len(times) // 10 :]) / n
+    settled = np.array(times[len(times) // 10 :]) / n / 1000.0
     everyone, now = np.arange(n), ticks * _TICK_S
     pieces = [everyone[i : i + 64] for i in range(0, n, 64)]
-    repeats = int(np.clip(20_000 // n, 3, 500))
-    judged = _least(lambda: [planner.evaluate(state, p, words[p], now) for p in pieces], repeats) / n
-    felt = _least(lambda: planner.tables.phi_state(emotion), repeats) / n
-    floor = _least(_floor(rng, n), repeats) / n
-    mean = float(settled.mean())
-    return PlannerRow(
-        n,
-        planner.config.look_s,
-        mean,
-        float(np.median(settled)),
-        float(settled.min()),
-        judged,
-        felt,
-        floor,
-        mean / max(floor, 1e-9),
-    )  # fmt: skip
+    repeats = int(np.clip(20_000 // n, 5, 500))
+    judged = _times(lambda: [planner.evaluate(state, p, words[p], now) for p in pieces], repeats) / n
+    floor = float(np.median(_times(_floor(rng, n), repeats))) / n
+    who = "1 character" if n == 1 else f"{n} characters"
+    wanted = "<= 18 µs" if n == 1 else "<= 0.8 µs"
+    drifting = row(f"{who}, {how}", settled.tolist(), unit="µs", floor=floor, wanted=wanted)
+    drifting["mean"] = float(settled.mean())
+    return [drifting, row(f"{who}, eq. 1 for all of them", judged.tolist(), unit="µs", floor=floor)]
 
 
 def _feelings(rng: np.random.Generator, n: int) -> NDArray[np.float64]:
@@ -153,11 +119,11 @@ def _floor(rng: np.random.Generator, n: int) -> Callable[[], object]:
     return scores_and_argmax
 
 
-def _least(work: Callable[[], object], repeats: int) -> float:
-    """Least wall time of a call over some repeats, ns: what the work costs when nothing disturbs it."""
-    best = float("inf")
+def _times(work: Callable[[], object], repeats: int) -> NDArray[np.float64]:
+    """Wall times of some calls, µs."""
+    times = []
     for _ in range(repeats):
         begin = time.perf_counter_ns()
         work()
-        best = min(best, float(time.perf_counter_ns() - begin))
-    return best
+        times.append((time.perf_counter_ns() - begin) / 1000.0)
+    return np.array(times)
