@@ -13,6 +13,8 @@ from game.render.silhouette import Edges, SilhouetteFinder
 
 __all__ = ["CharacterDrawing"]
 
+_Draw = tuple[moderngl.VertexArray, int, int]  # what to draw with: first corner, number of corners
+
 _CLASSES = {"hair": "HAIR", "face": "FACE", "skin": "SKIN", "gloss": "GLOSS", "cloth": "", "flat": ""}
 _MARGIN_PX = 6  # outline, feather and rounding outside the mesh's own box
 
@@ -71,7 +73,7 @@ class CharacterDrawing(Owner):
         clip, terms, place, _ = self._captured
         self._palette = self._buffer(mesh.palette)
         self._extra = self._buffer(mesh.extra)
-        self._index = self._buffer(mesh.triangle)
+        self._index = self.own(device.context.buffer(np.ascontiguousarray(mesh.triangle), dynamic=True))
         self._draws: list[tuple[moderngl.VertexArray, Run]] = []
         for run in mesh.runs:
             flags = {name: int(_CLASSES[run.kind] == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS")}
@@ -211,23 +213,35 @@ class CharacterDrawing(Owner):
         context.depth_func = "<"
         self.shadow_map.use(1)
         face.use(2)
-        for array, run in self._draws:
-            if self._whole or run.group == "above":
-                array.render(vertices=run.count, first=run.first)
+        runs = [(array, run.first, run.count) for array, run in self._draws if self._whole or run.group == "above"]
         corners = 4 * (len(self._mesh.edges.adjacency) if self._whole else self._mesh.above.edges)
         if self._finders is not None:
-            vertices = len(self._mesh.position) if self._whole else self._mesh.above.vertices
-            clip = np.frombuffer(self._captured[0].read(vertices * 16), dtype=np.float32).reshape(-1, 4)
-            rows = self._finders[self._whole].find(clip)
-            corners = rows.size
-            if corners:
-                self._edges.write(rows)
+            runs, corners = self._select(runs, self._finders[self._whole])
+        for array, first, count in runs:
+            if count:
+                array.render(vertices=count, first=first)
         if corners:
             context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
             context.blend_func = PREMULTIPLIED
             context.fbo.depth_mask = False
             self._outline.render(moderngl.LINES_ADJACENCY, vertices=corners)
             context.fbo.depth_mask = True
+
+    def _select(self, runs: list[_Draw], finder: SilhouetteFinder) -> tuple[list[_Draw], int]:
+        """Write the front faces and the silhouette of this pose to the index buffers; returns what to draw of them."""
+        mesh = self._mesh
+        vertices, triangles = (
+            (len(mesh.position), len(mesh.triangle)) if self._whole else (mesh.above.vertices, mesh.above.triangles)
+        )
+        clip = np.frombuffer(self._captured[0].read(vertices * 16), dtype=np.float32).reshape(-1, 4)
+        front, rows = finder.find(clip)
+        self._index.write(mesh.triangle[:triangles].compress(front, axis=0))
+        if len(rows):
+            self._edges.write(rows)
+        counts = np.add.reduceat(front, [first // 3 for _, first, _ in runs], dtype=np.intp) * 3
+        firsts = np.cumsum(counts) - counts
+        arrays = (array for array, _, _ in runs)
+        return list(zip(arrays, firsts.tolist(), counts.tolist(), strict=True)), rows.size
 
     def draw_over(self, face_over: moderngl.Texture) -> None:
         """Draw the second face layer over the hair."""

@@ -29,7 +29,7 @@ LEVELS: tuple[Level, ...] = (
     Level("low", 0, 15_000, 512, 1, 2, 512),
     Level("medium", 0, 25_000, 512, 1, 2, 512),
     Level("default", 0, 40_000, 768, 2, 2, 512),
-    Level("high", 4, 25_000, 768, 2, 2, 512),
+    Level("high", 4, 25_000, 768, 1, 2, 512),
     Level("ultra", 4, 40_000, 768, 2, 1, 1024),
 )
 DEFAULT = LEVELS[2]

@@ -56,7 +56,8 @@ def find_edges(
 
 
 class SilhouetteFinder:
-    """Picks the silhouette edges on the CPU: on a software rasteriser ten times faster than testing all edges there."""
+    """Picks front faces and silhouette edges on the CPU: for a software rasteriser a tenth of the work of testing all
+    edges itself, and three quarters of that of turning back faces away."""
 
     def __init__(self, edges: Edges, triangle: NDArray[np.int32]) -> None:
         """All of triangle (t, 3) may be used by the edges; a border edge is in front where its only face is."""
@@ -66,8 +67,8 @@ class SilhouetteFinder:
         # The face beyond a border never is in front: a place of its own at the end of the list.
         self._other = np.where(edges.face[:, 1] < 0, len(triangle), edges.face[:, 1])
 
-    def find(self, clip: NDArray[np.float32]) -> NDArray[np.int32]:
-        """clip (v, 4) clip-space positions -> adjacency rows (n, 4) int32 of the silhouette."""
+    def find(self, clip: NDArray[np.float32]) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
+        """clip (v, 4) clip-space positions -> front faces (t,), adjacency rows (n, 4) of the silhouette."""
         w = 1.0 / clip[:, 3]
         x, y = clip[:, 0] * w, clip[:, 1] * w
         a, b, c = self._corners
@@ -79,4 +80,4 @@ class SilhouetteFinder:
         np.greater(area, 0.0, out=front[:-1])
         silhouette = front.take(self._one, mode="clip") != front.take(self._other, mode="clip")
         rows: NDArray[np.int32] = self._adjacency.compress(silhouette, axis=0)
-        return rows
+        return front[:-1], rows

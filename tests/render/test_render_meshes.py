@@ -40,7 +40,8 @@ def clip_of(mesh, eye=(0.0, 0.0, 6.0)):
 
 def test_the_silhouette_of_a_cube_seen_from_the_front_is_its_front_square() -> None:
     mesh = merge_character([cube()], 1)
-    rows = SilhouetteFinder(mesh.edges, mesh.triangle).find(clip_of(mesh))
+    front, rows = SilhouetteFinder(mesh.edges, mesh.triangle).find(clip_of(mesh))
+    assert (mesh.position[mesh.triangle[front]][:, :, 2] == 1).all()
     edges = {frozenset(map(tuple, mesh.position[row[1:3]])) for row in rows}
     assert len(edges) == 4
     assert all(point[2] == 1 for edge in edges for point in edge)
@@ -60,8 +61,8 @@ def test_a_border_edge_counts_where_its_face_is_in_front() -> None:
     triangle = np.array([[0, 1, 2]], np.int32)
     finder = SilhouetteFinder(find_edges(position, triangle, np.ones(3, np.float32)), triangle)
     clip = np.hstack([position, np.ones((3, 1))]).astype(np.float32)
-    assert len(finder.find(clip)) == 3
-    assert len(finder.find(clip * np.array([-1, 1, 1, 1], np.float32))) == 0
+    assert len(finder.find(clip)[1]) == 3
+    assert len(finder.find(clip * np.array([-1, 1, 1, 1], np.float32))[1]) == 0
 
 
 def test_parts_without_outline_have_no_edges() -> None:
