@@ -16,6 +16,7 @@ from game.render.hud import Hud
 from game.render.levels import DEFAULT, Level
 from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
 from game.render.model import CharacterModel, StaticMesh
+from game.render.motes import Motes
 from game.render.scene_drawing import BakeKey, SceneDrawing
 from game.render.targets import Box, FrameTargets, copy_box, union
 from game.render.text import FontSet
@@ -60,6 +61,7 @@ class Renderer(Owner):
         self._scene = self.own(SceneDrawing(device, stall, backdrop))
         self._frame = self.own(FrameBlock(device))
         self._lights = Lights.market()
+        self._motes = self.own(Motes(device))
         self.hud = self.own(Hud(device, fonts))
         self._hidden_face = hidden_face()
         self._face: DrawList | None = None
@@ -200,16 +202,18 @@ class Renderer(Owner):
         if targets.samples:
             copy_box(context, targets.resolved, targets.work, changed)
             picture = targets.resolved
-        # The interface must not stay in a picture that the next frame only mends.
-        if window is not None or (targets.samples and view.hud is not None):
+        # What is drawn on top must not stay in a picture that the next frame only mends.
+        if window is not None or (targets.samples and (view.hud is not None or view.show_stall)):
             output = targets.output if window is None else window
             if window is not None:
                 window.viewport = (0, 0, *targets.size)
             output.use()
             context.copy_framebuffer(output, picture)
             picture = output
+        picture.use()
+        if view.show_stall:
+            self._motes.draw(view.time_s, targets.size[0] / targets.size[1])
         if view.hud is not None:
-            picture.use()
             self.hud.begin(targets.size)
             view.hud(self.hud)
             self.hud.end()

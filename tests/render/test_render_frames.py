@@ -248,3 +248,13 @@ def test_a_machine_without_opengl_is_told_what_to_install_in_one_line(monkeypatc
     with pytest.raises(MissingPart, match="libegl1 libgl1-mesa-dri") as caught:
         Device.headless(64, 64)
     assert "\n" not in str(caught.value)
+
+
+def test_specks_drift_with_the_time_and_only_with_it(renderer, view):
+    now = shot(renderer, view)
+    later = shot(renderer, replace(view, time_s=40.0))
+    moved = np.abs(now.astype(int) - later).max(axis=2) > 3
+    assert 20 < moved.sum() < 4000
+    assert np.array_equal(now, shot(renderer, view))
+    alone = replace(view, show_stall=False)
+    assert np.array_equal(shot(renderer, alone), shot(renderer, replace(alone, time_s=40.0)))
