@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
 from game.animation import channels as ch
+from game.animation.collision import TABLE_BACK_Z_M
 from game.animation.motion_bank import MotionBank
 from game.animation.playback import Playback
+from game.core.humanoid import TABLE_TOP_M
 
 __all__ = ["Blend", "advance_blend", "compose", "start_blend", "switch"]
 
@@ -34,6 +36,13 @@ MOMENTUM = 0.55
 """Speed left over from the old source is braked within min(span, this / speed): it carries a joint at most 0.2 × this
 (half radians) too far, a wrist at most 0.2 × this × an arm's length."""
 SHORTEST_BRAKE_S = 0.12
+ARC = np.array([[0.55, 0.5, 0.65], [-0.55, 0.5, 0.65]], dtype=np.float32)
+"""A hand's way bows out, up and forward by the emotion's arc times its length (MOTION.md, hands)."""
+LONGEST_ARC_M = 0.12
+ARC_PACE = 1.3
+"""A bowed way takes at least this times √(bow in metres) seconds: higher bows need time."""
+EDGE_LIFT_M, EDGE_CLEAR_M = 0.05, 0.13
+"""Between below and above the table a hand goes round its edge: it bows up by this and what it lacks of this height."""
 ARM_M = 0.42
 
 # Quintic Hermite basis on [0, 1]: value 1 → 0 and slope 1 → 0, everything else vanishing at both ends; with slopes.
@@ -46,14 +55,15 @@ for _table in (_VALUE, _SLOPE, _POWERS):
 _TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
 _TOUCHED.setflags(write=False)
 _PART_JOINTS = tuple(np.flatnonzero(p == ch.PART_OF_JOINT) for p in range(len(ch.PARTS)))
-_ARMS = (ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm"))
+_ARMS = [ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm")]
 
 
 @dataclass(frozen=True, eq=False)
 class Blend:
     """n characters. gate: (n, L, CHANNELS) share of each layer. owned: (n, L, PARTS) what each layer's unit owns.
     frame: (n, 2) contact frame of the hands. offset, offset_speed:
-    (n, CHANNELS) at the last switch, the latter times brake_s. age_s, span_s, brake_s: (n, PARTS). row, speed:
+    (n, CHANNELS) at the last switch, the latter times brake_s. arc: (n, 2, 3) how far the hands' ways bow, metres in
+    their contact frames. age_s, span_s, brake_s: (n, PARTS). row, speed:
     (n, CHANNELS) shown at the last tick. known: (n,) False before the first tick."""
 
     gate: Floats
@@ -61,6 +71,7 @@ class Blend:
     frame: NDArray[np.intp]
     offset: Floats
     offset_speed: Floats
+    arc: Floats
     age_s: Floats
     span_s: Floats
     brake_s: Floats
@@ -79,6 +90,7 @@ def start_blend(n: int, layers: int) -> Blend:
         frame=np.zeros((n, 2), dtype=np.intp),
         offset=zero,
         offset_speed=zero,
+        arc=np.zeros((n, 2, 3), dtype=np.float32),
         age_s=np.ones((n, parts), dtype=np.float32),
         span_s=np.ones((n, parts), dtype=np.float32),
         brake_s=np.ones((n, parts), dtype=np.float32),
@@ -101,12 +113,13 @@ def switch(
     events: Bools,
     value: Floats,
     base_s: Floats,
+    arc: Floats,
     contact_frames: Floats,
     posture_layer: int,
     dt_s: float,
 ) -> Blend:
     """Take up new sources. events: (n, L) layers whose source jumped; base_s: (n,) length of a middling transition;
-    contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
+    arc: (n,) bow of the hands' ways; contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
     layers = events.shape[1]
     owned = bank.owned[playback.unit] & playback.active[:, :, None]
     touched = owned | state.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
@@ -117,7 +130,10 @@ def switch(
     row = row + speed * np.float32(dt_s)
     row, speed = _same_side(row, speed, goal)
     offset, offset_speed = row - goal, speed - goal_speed
-    span = np.minimum(_spans(offset, base_s), _until_stroke(bank, playback, owned))
+    arcs = _arcs(row, goal, arc, contact_frames[np.arange(len(row))[:, None], frame])
+    span = _spans(offset, base_s)
+    span[:, _ARMS] = np.maximum(span[:, _ARMS], ARC_PACE * np.sqrt(np.linalg.norm(arcs, axis=-1)))
+    span = np.minimum(span, _until_stroke(bank, playback, owned))
     fresh = changed & state.known[:, None]
     span = np.where(fresh, span, state.span_s)
     brake = np.where(fresh, np.minimum(_brakes(offset_speed), span), state.brake_s)
@@ -130,6 +146,7 @@ def switch(
         frame=frame,
         offset=np.where(per_channel, offset, state.offset),
         offset_speed=np.where(per_channel, offset_speed * brake_of_channel, state.offset_speed),
+        arc=np.where(fresh[:, _ARMS, None], arcs, state.arc),
         age_s=np.where(fresh, np.float32(0.0), state.age_s),
         span_s=span,
         brake_s=brake,
@@ -148,6 +165,7 @@ def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
         a, da, b, db = curves.transpose(2, 0, 1).take(ch.PART_OF_CHANNEL, axis=2)
         row = row + state.offset * a + state.offset_speed * b
         speed = speed + state.offset * da + state.offset_speed * db
+        _bow(state, row, speed)
     return replace(state, row=row, speed=speed, age_s=state.age_s + np.float32(dt_s), known=np.ones_like(state.known))
 
 
@@ -197,10 +215,35 @@ def _same_side(row: Floats, speed: Floats, goal: Floats) -> tuple[Floats, Floats
     return row, speed
 
 
+def _arcs(row: Floats, goal: Floats, arc: Floats, frames: Floats) -> Floats:
+    """(n, 2, 3) how far each hand's way from row to goal bows, in its contact frame; frames: (n, 2, 4, 4)."""
+    start, end = (r[:, ch.WRIST].reshape(-1, 2, 3) for r in (row, goal))
+    length = np.linalg.norm(end - start, axis=-1, keepdims=True)
+    bow = ARC * np.clip(arc[:, None, None] * length, -LONGEST_ARC_M, LONGEST_ARC_M)
+    ways = np.stack([start, end], axis=2)
+    model = ways @ frames[..., :3, :3].swapaxes(-1, -2) + frames[:, :, None, :3, 3]
+    behind = model[..., 2] < TABLE_BACK_Z_M
+    height = model[..., 1].mean(axis=-1) - TABLE_TOP_M
+    crosses = (behind[..., 0] != behind[..., 1]) & (model[..., 1].min(axis=-1) < TABLE_TOP_M + EDGE_LIFT_M)
+    lift = np.where(crosses, EDGE_LIFT_M + np.clip(EDGE_CLEAR_M - height, 0.0, EDGE_CLEAR_M), 0.0)
+    # The second row of a frame's rotation is model space's up as the frame sees it.
+    return np.asarray(bow + lift[..., None] * frames[..., 1, :3], dtype=np.float32)
+
+
+def _bow(state: Blend, row: Floats, speed: Floats) -> None:
+    """Add the hands' arcs: a bump that starts and ends with no speed and no acceleration."""
+    span = state.span_s[:, _ARMS]
+    u = np.minimum(state.age_s[:, _ARMS] / span, 1.0)
+    rest = u * (1.0 - u)
+    height, slope = 64.0 * rest**3, 192.0 * rest * rest * (1.0 - 2.0 * u) / span
+    row[:, ch.WRIST] += (state.arc * height[..., None]).reshape(-1, 6)
+    speed[:, ch.WRIST] += (state.arc * slope[..., None]).reshape(-1, 6)
+
+
 def _spans(offset: Floats, base_s: Floats) -> Floats:
     """(n, PARTS) seconds a transition takes: longer for far moves."""
     span = base_s[:, None] * (GROWTH[0] + GROWTH[1] * np.sqrt(_largest(offset) * (4.0 / np.pi)))
-    return np.asarray(np.clip(span, SHORTEST_S, LONGEST_S), dtype=np.float32)
+    return np.array(np.clip(span, SHORTEST_S, LONGEST_S), dtype=np.float32)
 
 
 def _brakes(offset_speed: Floats) -> Floats:

@@ -62,6 +62,7 @@ class LifeConfig:
     darts_per_s: Floats = field(default_factory=lambda: _seven(0.9, 2.4, 1.2, 0.4, 0.8, 0.5, 0.8))
     dart_size: Floats = field(default_factory=lambda: _seven(0.04, 0.16, 0.08, 0.04, 0.07, 0.03, 0.06))
     tempo: Floats = field(default_factory=lambda: _seven(0.8, 0.75, 0.85, 1.7, 1.25, 0.8, 1.0))
+    arc: Floats = field(default_factory=lambda: _seven(0.06, 0.03, 0.3, -0.05, 0.1, 0.12, 0.12))
     transition_s: float = 0.42
     breath_share: float = 0.3
     sway_share: float = 0.35

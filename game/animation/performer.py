@@ -33,7 +33,7 @@ MODES: tuple[Mode, ...] = ("full", "gestures", "body", "face")
 """What of the behaviour is shown. ``gestures``: posture and mannerism stand at neutral; ``body``: everything the
 body does (the face is another stage's); ``face``: the body stands still at neutral."""
 
-PUSH_HALF_LIFE_S = 0.045
+PUSH_HALF_LIFE_S = 0.025
 """How softly a hand gives way to the body and the table."""
 
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
@@ -169,9 +169,9 @@ class Performer:
         blend = state.blend
         events = fresh | jumped
         if np.count_nonzero(events):
-            base_s = self.life.transition_s * (emotion @ self.life.tempo)
+            base_s, arc = self.life.transition_s * (emotion @ self.life.tempo), emotion @ self.life.arc
             blend = blending.switch(
-                self.bank, blend, play, events, value, base_s, state.contact_frames, self._posture, dt_s
+                self.bank, blend, play, events, value, base_s, arc, state.contact_frames, self._posture, dt_s
             )
         return play, blending.advance_blend(blend, value, dt_s)
 

@@ -38,15 +38,15 @@ def make_take(emotion: int) -> TakeClip:
         q[:, J[f"{side}UpperArm"]] = quat.multiply(
             turned(-72 * sign + 4 * wave, (0, 0, 1)), turned(-15 * sign * np.ones_like(t), (0, 1, 0))
         )
-        q[:, J[f"{side}LowerArm"]] = turned(-(35 + 8 * size * wave) * sign, (0, 1, 0))
+        q[:, J[f"{side}LowerArm"]] = turned(-(95 + 8 * size * wave) * sign, (0, 1, 0))
         for finger in ("Index", "Middle", "Ring", "Little"):
             q[:, J[f"{side}{finger}Proximal"]] = turned(20 * sign * np.ones_like(t), (0, 0, -1))
     q[:, J["leftLowerArm"]] = quat.slerp(
-        q[:, J["leftLowerArm"]], np.tile(turned(np.array(-70.0), (0, 1, 0)), (len(t), 1)), leaning
+        q[:, J["leftLowerArm"]], np.tile(turned(np.array(-125.0), (0, 1, 0)), (len(t), 1)), leaning
     )
     raised = quat.multiply(turned(60 * pointing * size / 1.5, (0, 1, 0)), q[:, J["rightUpperArm"]])
     q[:, J["rightUpperArm"]] = raised
-    q[:, J["rightLowerArm"]] = quat.multiply(turned(95 * touching, (0, 1, 0)), q[:, J["rightLowerArm"]])
+    q[:, J["rightLowerArm"]] = quat.multiply(turned(-35 * touching, (0, 1, 0)), q[:, J["rightLowerArm"]])
     tap = tapping * np.sin(2 * np.pi * 2.0 * t)
     q[:, J["leftHand"]] = turned(14 * tap, (0, 0, 1))
     root = np.tile(REFERENCE.rest_translation[0], (len(t), 1))
