@@ -29,6 +29,10 @@ class Session:
     message: str = ""
     running: bool = True
 
+    def money(self, amount: float) -> str:
+        """An amount as the stall's currency writes it in the present language."""
+        return self.assets.talk.script.currency.text(amount).get(self.strings.language)
+
 
 class Screen(Protocol):
     """One screen of the game. ``handle`` may return another screen to go to; ``intent`` is what the next tick does."""

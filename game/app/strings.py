@@ -10,7 +10,7 @@ from game.core.errors import BadInput
 from game.core.paths import ASSETS
 from game.formats.yaml_source import load_yaml
 
-__all__ = ["LANGUAGES", "Strings", "load_strings", "yen"]
+__all__ = ["LANGUAGES", "Strings", "load_strings"]
 
 LANGUAGES = ("en", "ja")
 
@@ -43,8 +43,3 @@ def load_strings(language: str = "en", path: Path = ASSETS / "ui" / "strings.yam
         value.only(*LANGUAGES)
         texts[key.as_str()] = {name: value[name].as_str() for name in LANGUAGES}
     return Strings(language, texts).switched(language)
-
-
-def yen(amount: float) -> str:
-    """¥1,240."""
-    return f"¥{round(amount):,}"

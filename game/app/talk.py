@@ -217,8 +217,8 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
         offer=choice.offer or round(bargain.offer * state.list_price),
     )
     story, beat = advance(assets.script, state.story, Chose(choice.id, outcome=outcome), env)
-    # The option's own `feel:` was added above, before the offer was weighed; the beat's remaining stimuli follow.
-    reacted = _with_stimuli(assets, feeling, replace(beat, stimuli=_after_choice(beat, known[choice.id].feel)))
+    # The option's own `feel:` was added above, before the offer was weighed; the beat brings those of what was said.
+    reacted = _with_stimuli(assets, feeling, beat)
     after = pass_round(assets.feelings, assets.person, reacted, _rng(state.seed, "mood", counter))
     return replace(
         moved,
@@ -236,8 +236,3 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
             ("shown", shown_emotion(assets.person, feeling)),
         ),
     )
-
-
-def _after_choice(beat: Beat, feel: Any) -> tuple[Any, ...]:
-    """The beat's stimuli without the choice's own, which comes first where there is one."""
-    return beat.stimuli[1:] if feel and beat.stimuli else beat.stimuli

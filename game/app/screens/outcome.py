@@ -9,7 +9,6 @@ import numpy as np
 from game.app.afternoon import finish_talk
 from game.app.input import Action
 from game.app.session import Screen, Session
-from game.app.strings import yen
 from game.app.talk import TalkState, ask_money
 from game.app.ui import FEELING_COLOURS, INK, PALETTE, Button, Buttons, Canvas, Rect, fade
 from game.app.world import Intent, Mark, leave_talk
@@ -68,14 +67,14 @@ class OutcomeScreen:
         name = script.person.name.get(s.language)
         right = box.x + box.w - 36
         canvas.text(x, y, script.items[talk.item].name.get(s.language), 21, INK, font="bold")
-        canvas.text(right, y, f"{s('list_price')} {yen(talk.list_price)}", 18, align="right")
+        canvas.text(right, y, f"{s('list_price')} {session.money(talk.list_price)}", 18, align="right")
         y += 32
         if won:
-            canvas.text(x, y, s("paid", money=yen(talk.deal_price)), 20)
+            canvas.text(x, y, s("paid", money=session.money(talk.deal_price)), 20)
             canvas.text(right, y, s("share", share=f"{talk.surplus:.0%}"), 18, align="right")
             canvas.bar(Rect(x, y + 32, box.w - 72, 14), talk.surplus, PALETTE["teal"], fade(PALETTE["line"], 0.18))
             y += 56
-        lowest = yen(ask_money(talk.list_price, talk.bargain.lowest))
+        lowest = session.money(ask_money(talk.list_price, talk.bargain.lowest))
         canvas.text(x, y, s("lowest", name=name, money=lowest), 18, PALETTE["faint"])
         bottom = box.y + box.h - 66
         top = y + 74

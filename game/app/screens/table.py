@@ -5,7 +5,6 @@ from __future__ import annotations
 from game.app.afternoon import visit_stall
 from game.app.input import Action
 from game.app.session import Screen, Session
-from game.app.strings import yen
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
 from game.app.world import Intent, enter_talk
 
@@ -52,12 +51,12 @@ class TableScreen:
         left = canvas.width - 396
         canvas.panel(Rect(left - 16, 24, 396, 78 + 66 * (len(items) + 1)), fade(PALETTE["shade"], 0.75), radius=22)
         canvas.text(left, 38, s("pick"), 20, PALETTE["white"])
-        canvas.text(left, 66, s("purse", money=yen(session.afternoon.purse)), 18, PALETTE["paper_warm"])
+        canvas.text(left, 66, s("purse", money=session.money(session.afternoon.purse)), 18, PALETTE["paper_warm"])
         owned = session.afternoon.owned
         buttons = []
         for i, item in enumerate(items.values()):
             label = item.name.get(s.language)
-            price = s("sold") if item.id in owned else f"{s('list_price')} {yen(item.list_price)}"
+            price = s("sold") if item.id in owned else f"{s('list_price')} {session.money(item.list_price)}"
             buttons.append(
                 Button(
                     item.id,
@@ -103,7 +102,7 @@ class DayOverScreen:
         canvas.panel(box, border=3, shadow=16, radius=22)
         canvas.text(canvas.width / 2, box.y + 24, s("day_over"), 34, INK, font="title", align="center")
         if afternoon.bought:
-            total = s("bought", count=len(afternoon.bought), money=yen(afternoon.purse))
+            total = s("bought", count=len(afternoon.bought), money=session.money(afternoon.purse))
         else:
             total = s("nothing_bought")
         canvas.text(canvas.width / 2, box.y + 80, total, 19, INK, align="center")
@@ -111,7 +110,13 @@ class DayOverScreen:
             y = box.y + 122 + i * 34
             name = session.assets.talk.script.items[bought.item].name.get(s.language)
             canvas.text(box.x + 60, y, name, 18)
-            canvas.text(box.x + 430, y, f"{yen(bought.price)}  /  {yen(bought.list_price)}", 17, align="right")
+            canvas.text(
+                box.x + 430,
+                y,
+                f"{session.money(bought.price)}  /  {session.money(bought.list_price)}",
+                17,
+                align="right",
+            )
             canvas.bar(Rect(box.x + 450, y + 5, 130, 12), bought.surplus, PALETTE["teal"], fade(PALETTE["line"], 0.2))
         self._buttons.lay([Button("title", s("to_title"), Rect(canvas.width / 2 - 120, box.y + height - 70, 240, 48))])
         self._buttons.draw(canvas)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from game.app.input import Action
 from game.app.overlays import draw_overlays
 from game.app.session import Screen, Session
-from game.app.strings import yen
 from game.app.talk import MONEY_STEP, Choice, ask_money
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
 from game.app.world import Intent
@@ -118,14 +117,14 @@ class TalkScreen:
         canvas.text(box.x + 16, box.y + 9, item.name.get(s.language), 19, INK, font="bold")
         rounds = session.assets.talk.market.rounds
         done = min(talk.bargain.round + (0 if talk.ended else 1), rounds)
-        canvas.text(box.x + 16, box.y + 41, s("purse", money=yen(talk.purse)), 16, PALETTE["faint"])
+        canvas.text(box.x + 16, box.y + 41, s("purse", money=session.money(talk.purse)), 16, PALETTE["faint"])
         canvas.text(
             box.x + 190, box.y + 41, s("round", round=done, rounds=rounds), 16, PALETTE["faint"], align="center"
         )
         right = box.x + box.w - 16
         paid = talk.deal_price > 0
         canvas.text(right, box.y + 7, s("paid_price" if paid else "asking"), 14, PALETTE["faint"], align="right")
-        ask = yen(talk.deal_price if paid else ask_money(talk.list_price, talk.bargain.ask))
+        ask = session.money(talk.deal_price if paid else ask_money(talk.list_price, talk.bargain.ask))
         canvas.text(right, box.y + 24, ask, 31, PALETTE["red"], font="title", align="right")
 
     def _draw_choices(self, session: Session, canvas: Canvas) -> None:
@@ -141,7 +140,7 @@ class TalkScreen:
             buttons.append(
                 Button(
                     choice.id,
-                    self._shown(choice, s.language),
+                    self._shown(session, choice),
                     Rect(left, y, CARD_WIDTH, height),
                     enabled=choice.available,
                     key=str(i + 1),
@@ -167,14 +166,14 @@ class TalkScreen:
             words = Rect(left, y + 50, CARD_WIDTH, 42)
             canvas.panel(words, fade(PALETTE["shade"], 1.2), radius=12)
             room = Rect(left + 14, y + 54, CARD_WIDTH - 28, 36)
-            canvas.paragraph(room, self._shown(focused, s.language), 16, PALETTE["white"], middle=True)
+            canvas.paragraph(room, self._shown(session, focused), 16, PALETTE["white"], middle=True)
         hint = Rect(left, canvas.height - 62, CARD_WIDTH, 46)
         canvas.panel(hint, fade(PALETTE["shade"], 0.8), radius=12)
         canvas.paragraph(Rect(left + 12, canvas.height - 58, CARD_WIDTH - 24, 40), s("hint_talk"), 13, PALETTE["white"])
 
     def _dial(self, session: Session, canvas: Canvas, left: float, y: float) -> list[Button]:
         s = session.strings
-        text = s("offer_with", money=yen(self._amount)) if self._with_offer else s("no_offer")
+        text = s("offer_with", money=session.money(self._amount)) if self._with_offer else s("no_offer")
         if self._with_offer:
             canvas.panel(Rect(left - 4, y - 4, CARD_WIDTH + 8, 56), fade(PALETTE["red"], 0.9), radius=18)
         return [
@@ -184,8 +183,8 @@ class TalkScreen:
             Button("meet", s("meet"), Rect(left + CARD_WIDTH - 62, y, 62, 48), key="p", size=14),
         ]
 
-    def _shown(self, choice: StoryChoice, language: str) -> str:
-        return choice.text(language).replace("{offer}", yen(self._amount))
+    def _shown(self, session: Session, choice: StoryChoice) -> str:
+        return choice.text(session.strings.language).replace("{offer}", session.money(self._amount))
 
     def _draw_subtitles(self, session: Session, canvas: Canvas) -> None:
         world, s = session.world, session.strings
