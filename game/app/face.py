@@ -14,9 +14,11 @@ The window needs the `tools` extra (pip install -e '.[tools]'), plots the `repor
 from __future__ import annotations
 
 import argparse
+import importlib.util
 from pathlib import Path
 
 from game.app.arguments import parse_size
+from game.core.errors import MissingPart
 from game.core.paths import ASSETS
 
 __all__ = ["add_arguments", "run"]
@@ -89,6 +91,8 @@ def run(args: argparse.Namespace) -> int:
         from game.tools.face.rate_window import run_rating
 
         return run_rating(args)
-    from game.tools.face.author_window import run_author
+    if importlib.util.find_spec("imgui_bundle") is None:
+        raise MissingPart("the authoring window needs imgui-bundle: pip install -e '.[tools]'")
+    from game.tools.face.author_window import open_author
 
-    return run_author(args)
+    return open_author(args)

@@ -126,7 +126,7 @@ class RateScreen:
         self._lay()
         self._buttons.draw(canvas, self._paint)
         canvas.bar(Rect(716, 572, 500, 6), sitting.done / max(sitting.total, 1), PALETTE["teal"], PALETTE["paper_warm"])
-        note = sitting.message or "Click or arrows: place it.  1–7: name it, if you like.  Enter: next.  Backspace: undo."
+        note = sitting.message or "Click or arrows: place it.  1–7: name it, or not.  Enter: next.  Backspace: undo."
         canvas.text(716, 690, note, 16, PALETTE["red"] if sitting.message else PALETTE["faint"])
 
     def _lay(self) -> None:
@@ -230,7 +230,7 @@ def run_rating(args: argparse.Namespace) -> int:
     try:
         sitting = Sitting(log, faces, args.rater, args.seed)
         _need_display()
-        device = Device.window(*args.size, "How does this face feel?")
+        device = Device.window(args.size[0], args.size[1], "How does this face feel?")
         window = _RateWindow(device, asset, RateScreen(sitting, _now))
         try:
             window.run()
