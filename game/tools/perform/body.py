@@ -145,7 +145,9 @@ def legs(shift: Floats, hips_rotation: Floats) -> tuple[Floats, dict[str, Floats
         reach = (0.99 * (thigh_m + shin_m)) ** 2 - level[:, 0] ** 2 - level[:, 2] ** 2
         ceiling = np.minimum(ceiling, np.sqrt(np.maximum(reach, 0.01)) - level[:, 1])
     # A pelvis that moved away over flat feet is lower; heels add only what a rise was asked for (softly above 0).
-    ceiling = ceiling + 0.006 * np.logaddexp(0.0, up / 0.006)
+    # (A pelvis far back over the heels cannot also be on tiptoe.)
+    away = np.exp(-(shift[:, 0] ** 2 + shift[:, 2] ** 2) / 0.075**2)
+    ceiling = ceiling + away * 0.006 * np.logaddexp(0.0, up / 0.006)
     width = 0.006
     up = up - width * np.logaddexp(0.0, (up - ceiling) / width)
     shift = np.stack([shift[:, 0], up, shift[:, 2]], -1)

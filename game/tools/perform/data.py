@@ -77,6 +77,7 @@ class Effort:
     sway_band_hz: tuple[float, float]
     tremor: float
     attention: Attention
+    undertone: tuple[tuple[str, float, float], ...]
     carriage: Mapping[str, float]
 
 
@@ -155,6 +156,13 @@ def _pair(node: Node) -> tuple[str, str]:
     return names[0], names[1]
 
 
+def _undertone(node: Node) -> tuple[str, float, float]:
+    items = node.as_list()
+    if len(items) != 3 or items[0].as_str() not in CHANNELS:
+        raise BadInput(where=node.where, expected="[channel, amount, Hz]", seen=str(node.to_python()))
+    return items[0].as_str(), items[1].as_float(), items[2].as_float(0, 8)
+
+
 def _channels(node: Node | None) -> dict[str, float]:
     if node is None:
         return {}
@@ -180,6 +188,7 @@ def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
         "sway",
         "tremor",
         "attention",
+        "undertone",
         "carriage",
     )
     sharp, anticipation = node["sharp"].as_float(0, 2), node["anticipation"].as_float(0, 1)
@@ -209,6 +218,7 @@ def load_effort(emotion: str, path: Path = MOTION / "effort.yaml") -> Effort:
             notice["pitch"].as_float(0, 60),
             notice["move"].as_float(0.05, 5),
         ),
+        undertone=tuple(_undertone(item) for item in node["undertone"].as_list()),
         carriage=_channels(node["carriage"]),
     )
 

@@ -132,9 +132,16 @@ def _follow(
 
 
 def perform_hand(
-    track: HandTrack, side: str, time: Floats, effort: Effort, position: Floats, rotation: Floats, shiver: Floats
+    track: HandTrack,
+    side: str,
+    time: Floats,
+    effort: Effort,
+    position: Floats,
+    rotation: Floats,
+    shiver: Floats,
+    fidget: Floats,
 ) -> HandPath:
-    """Keys of one hand -> where it is. position (F, J, 3), rotation (F, J, 4): the trunk; shiver (F, 3) metres."""
+    """Keys of one hand -> where it is. position (F, J, 3), rotation (F, J, 4): the trunk; shiver (F, 3), fidget (F, 4)."""
     turns: dict[HandKey, Floats] = {}
     path = _follow(track, side, time, position, rotation, turns)
     # A touching hand rides on what it touches; only what the hand itself does goes through its spring. So the path
@@ -171,7 +178,7 @@ def perform_hand(
     )
     turned = quat.multiply(quat.exp(riding * turn_vector), turned)
     # Waves keep their size on a stiff hand; the fingers trail behind a moving wrist.
-    wrist = wrist + track.shift + shiver
+    wrist = wrist + track.shift + shiver + fidget[:, :3] * (1.0 - 0.8 * riding)
     speed = spring(np.gradient(wrist, DT_S, axis=0), 4.0, 0.7)
     hand = turned
     wave = np.radians(track.turn_deg)
@@ -182,6 +189,6 @@ def perform_hand(
     lag = lag / np.maximum(1.0, np.linalg.norm(lag, axis=-1, keepdims=True) / 0.45)
     curls = spring(delay(path.curls.reshape(len(time), 15), 0.05 * effort.drag), 1.2 * frequency, 0.8)
     curls = curls.reshape(-1, 5, 3)
-    curls[:, :4, :2] += track.curl_deg[:, None, None]
+    curls[:, :4, :2] += (track.curl_deg + fidget[:, 3] * (1.0 - riding[:, 0]))[:, None, None]
     curls[:, :4, :2] = np.clip(curls[:, :4, :2], -12.0, 95.0)
     return HandPath(wrist, hand_frame(fingers - lag, back), spring(unit(path.pole), 3.0, 1.0), curls, firm[:, 0])

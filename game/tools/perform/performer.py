@@ -22,7 +22,7 @@ __all__ = ["render_stage"]
 Floats = NDArray[np.floating[Any]]
 _DELAYS_S = (0.0, 0.03, 0.06, 0.10, 0.0)
 _STIFFNESS = (1.15, 1.0, 0.85, 0.75, 1.0)
-_PASSES = 7
+_PASSES = 9
 
 
 def _lungs(stage: Stage, rng: np.random.Generator) -> Floats:
@@ -75,6 +75,10 @@ def _trunk_channels(stage: Stage, rng: np.random.Generator) -> tuple[dict[str, F
     amounts = {"sideways": 0.006, "forward": 0.004, "twist": 1.2, "side": 1.0, "head_yaw": 2.2, "head_roll": 1.6}
     for i, (name, amount) in enumerate(amounts.items()):
         x[name] += sway[:, i] * amount
+    # What goes on under everything swells and ebbs, never quite away.
+    swell = 0.62 + 0.38 * np.sin(band_noise(frames, 1, 0.04, 0.12, rng)[:, 0])
+    for name, amount, hz in effort.undertone:
+        x[name] += amount * swell * np.sin(2.0 * np.pi * (hz * stage.time + rng.random() * 0.1))
     shiver = band_noise(frames, 12, 8.0, 12.0, rng) * stage.tremor[:, None]
     shakes = {"head_yaw": 0.55, "head_roll": 0.6, "shoulders": 0.7, "sideways": 0.0011, "up": 0.0008, "twist": 0.25}
     for i, (name, amount) in enumerate(shakes.items()):
@@ -82,6 +86,14 @@ def _trunk_channels(stage: Stage, rng: np.random.Generator) -> tuple[dict[str, F
     # The soft knees of someone who stands at ease.
     x["up"] = x["up"] - 0.012
     return x, 0.0024 * shiver[:, 6:].reshape(frames, 2, 3)
+
+
+def _fidget(stage: Stage, rng: np.random.Generator) -> Floats:
+    """A free hand is never quite still: drift of the wrist, metres, and how fingers close, degrees -> (F, 4)."""
+    effort = stage.effort
+    low, high = effort.sway_band_hz
+    drift = band_noise(len(stage.time), 4, 1.3 * low, 1.3 * high, rng)
+    return np.asarray(effort.sway * drift * (0.006, 0.006, 0.006, 4.0))
 
 
 def _assist(path: HandPath, side: str, position: Floats, rotation: Floats) -> Floats:
@@ -111,7 +123,9 @@ def render_stage(stage: Stage, rng: np.random.Generator, name: str) -> Clip:
     position, rotation = REFERENCE.to_model(local, translation)
     paths = {}
     for i, side in enumerate(SIDES):
-        path = perform_hand(stage.hands[side], side, stage.time, stage.effort, position, rotation, shiver[:, i])
+        fidget = _fidget(stage, rng)
+        track = stage.hands[side]
+        path = perform_hand(track, side, stage.time, stage.effort, position, rotation, shiver[:, i], fidget)
         paths[side] = path
         joint = REFERENCE.index[f"{side}Shoulder"]
         local[:, joint] = quat.multiply(
