@@ -6,6 +6,7 @@ faster. The crowd is cut into pieces that stay in the cache.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,43 +28,61 @@ PIECE = 128
 def crowd_matrices(rig: Rig, pose: Pose) -> Floats:
     """(n, K, 4, 4) skin matrices, springs at rest; the same as rig.skin_matrices(rig.joint_matrices(pose))."""
     n, columns = len(pose), len(rig.skin_joint)
-    result = np.empty((n, columns, 4, 4), dtype=np.float32)
-    rotation, root = rig.local_rotations(pose), rig.root_translation(pose)
+    plan = _plan(rig)
+    result = np.empty((n, columns, 16), dtype=np.float32)
+    rotation, root = rig.local_rotations(pose).take(plan.order, axis=1), rig.root_translation(pose)
     for start in range(0, n, PIECE):
         piece = slice(start, min(start + PIECE, n))
         quaternion = np.ascontiguousarray(rotation[piece].transpose(2, 1, 0))
-        turn, place = _model(rig, quaternion, root[piece].T)
-        result[piece] = _skinned(rig, turn, place).transpose(3, 2, 0, 1)
-    return result
+        turn, place = _model(plan, quaternion, root[piece].T)
+        skin = _skinned(plan, turn, place)
+        # In two steps: whole matrices of 64 bytes are moved in the second.
+        rows = np.ascontiguousarray(skin.reshape(16, -1).T)
+        result[piece] = rows.reshape(columns, -1, 16).transpose(1, 0, 2)
+    return result.reshape(n, columns, 4, 4)
 
 
-def _model(rig: Rig, q: Floats, root: Floats) -> tuple[Floats, Floats]:
-    """q: (4, J, m) local, root: (3, m) -> model-space rotations (3, 3, J, m) and positions (3, J, m)."""
-    local = _turns(q)
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """A rig's joints by depth, so that a level is a slice. order: (J,) joints; levels: slice and, in that order, the
+    parents; shift: (3, J, 1) rest translations; hips and skin columns in that order; bind: (3, 4, K, 1)."""
+
+    order: NDArray[np.intp]
+    levels: tuple[tuple[slice, NDArray[np.intp]], ...]
+    shift: Floats
+    hips: int
+    column: NDArray[np.intp]
+    bind: Floats
+
+
+def _plan(rig: Rig) -> _Plan:
     skeleton = rig.skeleton
-    turn = np.empty_like(local)
-    place = np.empty((3, *q.shape[1:]), dtype=np.float32)
-    shift = skeleton.rest_translation.T.astype(np.float32)[:, :, None]
-    hips = rig.hips
+    order = np.concatenate(skeleton.levels)
+    place = np.empty(len(order), dtype=np.intp)
+    place[order] = np.arange(len(order))
+    levels, at = [], 0
     for level in skeleton.levels:
-        parent = skeleton.parents[level]
-        if parent[0] < 0:
-            turn[:, :, level] = local[:, :, level]
-            place[:, level] = root[:, None] if hips in level else shift[:, level]
-            continue
-        above, here = turn[:, :, parent], local[:, :, level]
-        product = above[:, 0, None] * here[None, 0]
+        levels.append((slice(at, at + len(level)), place[skeleton.parents[level]]))
+        at += len(level)
+    shift = skeleton.rest_translation[order].T.astype(np.float32)[:, :, None]
+    bind = np.ascontiguousarray(rig.inverse_bind[:, :3].transpose(1, 2, 0))[..., None]
+    return _Plan(order, tuple(levels), shift, int(place[rig.hips]), place[rig.skin_joint], bind)
+
+
+def _model(plan: _Plan, q: Floats, root: Floats) -> tuple[Floats, Floats]:
+    """q: (4, J, m) local, root: (3, m) -> model-space rotations (3, 3, J, m) and positions (3, J, m)."""
+    turn = _turns(q)
+    place = np.empty((3, *q.shape[1:]), dtype=np.float32)
+    place[:] = plan.shift
+    place[:, plan.hips] = root
+    for level, parent in plan.levels[1:]:
+        above, here, offset = turn.take(parent, axis=2), turn[:, :, level], place[:, level]
+        product, moved = above[:, 0, None] * here[None, 0], above[:, 0] * offset[0]
         for k in (1, 2):
             product += above[:, k, None] * here[None, k]
-        turn[:, :, level] = product
-        offset = shift[:, level]
-        if hips in level:
-            offset = np.repeat(offset, root.shape[1], axis=2)
-            offset[:, np.flatnonzero(level == hips)[0]] = root
-        moved = above[:, 0] * offset[0]
-        for k in (1, 2):
             moved += above[:, k] * offset[k]
-        place[:, level] = place[:, parent] + moved
+        turn[:, :, level] = product
+        np.add(place.take(parent, axis=1), moved, out=place[:, level])
     return turn, place
 
 
@@ -88,15 +107,13 @@ def _turns(q: Floats) -> Floats:
     return turn
 
 
-def _skinned(rig: Rig, turn: Floats, place: Floats) -> Floats:
+def _skinned(plan: _Plan, turn: Floats, place: Floats) -> Floats:
     """Model-space (3, 3, J, m), (3, J, m) -> (4, 4, K, m) skin matrices."""
-    bind = rig.inverse_bind.transpose(1, 2, 0)[..., None]
-    turn, place = turn[:, :, rig.skin_joint], place[:, rig.skin_joint]
-    skin = np.empty((4, 4, *place.shape[1:]), dtype=np.float32)
-    top = skin[:3]
-    np.multiply(turn[:, 0, None], bind[None, 0], out=top)
+    turn = turn.take(plan.column, axis=2)
+    skin = np.empty((4, 4, *turn.shape[2:]), dtype=np.float32)
+    top = np.multiply(turn[:, 0, None], plan.bind[None, 0], out=skin[:3])
     for k in (1, 2):
-        top += turn[:, k, None] * bind[None, k]
-    top[:, 3] += place
-    skin[3] = np.array([0.0, 0.0, 0.0, 1.0], dtype=np.float32)[:, None, None]
+        top += turn[:, k, None] * plan.bind[None, k]
+    top[:, 3] += place.take(plan.column, axis=1)
+    skin[3, :3], skin[3, 3] = 0.0, 1.0
     return skin
