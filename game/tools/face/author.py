@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from game.core import BadInput
 from game.face import REGIONS, Face, FaceAsset, NamedExpression, Parts, load_expressions
 from game.tools.face.wanted import COHERENCE, Found, Proposer, Wanted
-from game.tools.face.yaml_edit import add_expression, check_name
+from game.tools.face.yaml_edit import add_expression, add_to_dialogue, check_name
 
 __all__ = ["Author", "Draft"]
 
@@ -41,9 +41,10 @@ class Draft:
 class Author:
     """The authoring tool's state and everything that can be done to it."""
 
-    def __init__(self, asset: FaceAsset, save_to: Path) -> None:
+    def __init__(self, asset: FaceAsset, save_to: Path, dialogue_faces: Path | None = None) -> None:
         self.asset = asset
         self.save_to = save_to
+        self.dialogue_faces = dialogue_faces
         self.draft = Draft()
         self.message = ""
         self.failed = False
@@ -199,10 +200,12 @@ class Author:
         try:
             name = check_name(name.strip(), list(self.faces_named()))
             add_expression(self.save_to, name, label.strip() or name.replace("_", " "), self.draft.face, self.parts)
+            self._saved[name] = self.draft.face
+            if self.dialogue_faces is not None:
+                add_to_dialogue(self.dialogue_faces, name)
         except BadInput as error:
             self.message, self.failed = str(error), True
             return False
-        self._saved[name] = self.draft.face
         self.message, self.failed = f"Saved. In a dialogue: face: {name}", False
         return True
 

@@ -14,7 +14,7 @@ import pygame
 from imgui_bundle import imgui
 
 from game.app.play import _need_display
-from game.core import EMOTIONS
+from game.core import ASSETS, DIALOGUE, EMOTIONS
 from game.face import Face, load_face
 from game.render import Device, level_named
 from game.tools.face.author import Author
@@ -317,7 +317,10 @@ class AuthorWindow:
 def open_author(args: argparse.Namespace) -> int:
     """Open the window; returns when it is closed."""
     folder: Path = args.face_folder
-    author = Author(load_face(folder), args.save_to or folder / "expressions.yaml")
+    save_to = args.save_to or folder / "expressions.yaml"
+    # The game's own expressions are also listed where dialogue lines look for them.
+    shipped = save_to.resolve() == (ASSETS / "face" / "expressions.yaml").resolve()
+    author = Author(load_face(folder), save_to, DIALOGUE / "faces.yaml" if shipped else None)
     _need_display()
     device = Device.window(args.size[0], args.size[1], "Faces")
     window = AuthorWindow(device, author)

@@ -17,9 +17,18 @@ from game.core import BadInput, Where
 from game.face import REGIONS, Face, Parts, load_expressions, load_parts, load_weights
 from game.formats import Node, parse_yaml
 from game.formats.files import decode_utf8, read_bytes, write_text
+from game.story.reader import load_faces
 from game.tools.face.fitting import FaceFit, PartFit
 
-__all__ = ["NEW_EXPRESSIONS", "add_expression", "check_name", "with_gaussians", "with_weights", "write_checked"]
+__all__ = [
+    "NEW_EXPRESSIONS",
+    "add_expression",
+    "add_to_dialogue",
+    "check_name",
+    "with_gaussians",
+    "with_weights",
+    "write_checked",
+]
 
 MAX_BYTES = 2_000_000
 NEW_EXPRESSIONS = (
@@ -172,16 +181,27 @@ def add_expression(path: Path, name: str, label: str, face: Face, parts: Parts) 
     rows = [f"  {name}:", f'    label: {{en: "{shown}"}}']
     rows += [f"    {region}: {part}" for region, part in zip(REGIONS, face.parts, strict=True)]
     lines = text.splitlines()
-    place = _end_of_expressions(lines, path)
+    place = _end_of_block(lines, "expressions", path)
     merged = "\n".join([*lines[:place], *rows, *lines[place:]]) + "\n"
     write_checked(path, merged, lambda trial: load_expressions(trial, parts))
 
 
-def _end_of_expressions(lines: list[str], path: Path) -> int:
-    """Number of the line behind the last entry of the block ``expressions:``."""
-    start = next((i for i, row in enumerate(lines) if re.fullmatch(r"expressions:\s*(#.*)?", row)), None)
+def add_to_dialogue(path: Path, name: str) -> None:
+    """List a name among the faces that dialogue lines may ask for, with no nudge on what is shown. A name that is
+    listed stays as it is. Raises BadInput, the file as it was."""
+    if name in load_faces(path):
+        return
+    lines = read_source(path).splitlines()
+    place = _end_of_block(lines, "faces", path)
+    merged = "\n".join([*lines[:place], f"  {name}: {{}}", *lines[place:]]) + "\n"
+    write_checked(path, merged, load_faces)
+
+
+def _end_of_block(lines: list[str], key: str, path: Path) -> int:
+    """Number of the line behind the last entry of a block at the left edge."""
+    start = next((i for i, row in enumerate(lines) if re.fullmatch(rf"{key}:\s*(#.*)?", row)), None)
     if start is None:
-        raise BadInput(where=Where(path), expected="a block 'expressions:' at the left edge", seen="none")
+        raise BadInput(where=Where(path), expected=f"a block '{key}:' at the left edge", seen="none")
     end = start + 1
     for i in range(start + 1, len(lines)):
         if lines[i].strip() and not lines[i].lstrip().startswith("#"):
