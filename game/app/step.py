@@ -39,6 +39,8 @@ BURST_GAIN = 0.45
 """… by this share of the felt emotion on top, and leaves a residue in the posture."""
 AFTER_LINE_S = 0.35
 """A breath after each line before the next may begin by itself."""
+PRESENT = 0.15
+"""A gesture that less than this of the felt emotion knows does not hold a line up and competes with no beat."""
 CUSTOMER_GAZE = np.array([0.0, 1.16, 3.0])
 
 
@@ -126,20 +128,23 @@ def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
     plain = TimedText(line.text(world.language), world.language)
     chars_per_s = None if factor is None else factor * max(len(plain.text), 1) / max(plain.length_s, 1e-3)
     timed = plain if chars_per_s is None else TimedText(plain.text, world.language, chars_per_s)
-    cues = None
+    cues, visemes, start_s = None, None, world.time_s
     if line.speaker == "shopkeeper":
-        cues = GestureCues.from_tokens(assets.planner.library, _tokens(plain, world.time_s), world.language)
-    visemes = None
-    if assets.face is not None and line.speaker == "shopkeeper":
-        visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
-    return Speech(line, timed, world.time_s, cues, visemes, hurried=factor is None)
+        cues, start_s = _cues(assets, world, timed)
+        if assets.face is not None:
+            visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
+    return Speech(line, timed, start_s, cues, visemes, hurried=factor is None)
 
 
-def _tokens(timed: TimedText, start_s: float) -> list[tuple[str, float]]:
-    """(token, world time) of a line: words where they are spaced, else the rest of the line at every character."""
-    if timed.language == "ja":
-        return [(timed.text[i:], start_s + at) for i, at in enumerate(timed.char_s)]
-    return [(word.text, start_s + word.start_s) for word in timed.words]
+def _cues(assets: StepAssets, world: World, timed: TimedText) -> tuple[GestureCues, float]:
+    """What the line's words call up, and when it begins: hands set out before the voice (preparation)."""
+    library, config = assets.planner.library, assets.planner.config
+    emotion = body_emotion(assets, world)
+    shown = library.exists[library.gestures] @ emotion > PRESENT
+    cues = GestureCues.from_line(library, timed.text, timed.char_s, timed.language, shown=shown, stress=config.stress)
+    lead_in_s = cues.preparation_s(library.stroke_lead_s(emotion[None, :])[0], shown)
+    start_s = world.time_s + min(lead_in_s, config.lead_in_s)
+    return cues.later(start_s), start_s
 
 
 def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:
@@ -164,7 +169,8 @@ def planner_stage(assets: StepAssets, world: World, intent: Intent) -> World:
     emotion = body_emotion(assets, world)[None, :]
     words = np.zeros((1, len(library.gestures)))
     if world.speech is not None and world.speech.cues is not None:
-        words = world.speech.cues.factors(world.time_s, library.stroke_lead_s(emotion)[0])[None, :]
+        lead_s, window_s = library.stroke_lead_s(emotion)[0], assets.planner.config.word_window_s
+        words = world.speech.cues.factors(world.time_s, lead_s, window_s)[None, :]
     signal = PlannerSignal(emotion=emotion, words=words, time_s=world.time_s)
     state, decisions = assets.planner.advance(world.body.planner, signal, TICK_S)
     return replace(world, body=replace(world.body, planner=state, decisions=decisions, signal=signal))
@@ -175,7 +181,7 @@ def speaking(world: World) -> bool:
     speech = world.speech
     if speech is None or speech.line.speaker != "shopkeeper":
         return False
-    return world.time_s - speech.started_s < speech.timed.length_s
+    return 0.0 <= world.time_s - speech.started_s < speech.timed.length_s
 
 
 def performer_stage(assets: StepAssets, world: World, intent: Intent) -> World:

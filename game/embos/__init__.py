@@ -8,6 +8,7 @@ from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.planner import Planner
 from game.embos.planner_state import TICK_S, Decisions, PlannerSignal, PlannerState
+from game.embos.stress import StressRule, stressed_moments
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "PlannerConfig",
     "PlannerSignal",
     "PlannerState",
+    "StressRule",
     "TakeClip",
     "UnitLibrary",
     "Variant",
@@ -32,5 +34,6 @@ __all__ = [
     "mix_weights",
     "pack_clips",
     "rest_unit",
+    "stressed_moments",
     "timed_tokens",
 ]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from game.core.errors import BadInput
+from game.embos.stress import StressRule
 from game.embos.units import LAYERS, LAYERS_WITH_REST
 from game.formats.yaml_source import Node, load_yaml
 
@@ -23,7 +24,8 @@ class PlannerConfig:
     emotion, 0: every tick. settled: layers whose units are taken to have run before the first tick, so that not all
     are free at once. rest: layer -> φ_state of its rest unit. presence: 0..1, see scores.presence.
     tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a
-    word's moment stays open.
+    word's moment stays open. lead_in_s: most seconds a line waits for the preparation of its first gesture. stress:
+    which words beats may fall on.
     """
 
     layers: tuple[str, ...] = LAYERS
@@ -43,6 +45,8 @@ class PlannerConfig:
     tolerance: float = 0.02
     radius: float = 0.5
     word_window_s: float = 0.1
+    lead_in_s: float = 0.7
+    stress: StressRule = field(default_factory=StressRule)
 
     def __post_init__(self) -> None:
         if sorted(self.layers) != sorted(LAYERS):
@@ -60,6 +64,7 @@ class PlannerConfig:
             ("tolerance", 0.0, 1.0),
             ("radius", 1e-3, 100.0),
             ("word_window_s", 0.0, 10.0),
+            ("lead_in_s", 0.0, 10.0),
         ):
             value = getattr(self, name)
             if not low <= value <= high:
@@ -88,13 +93,15 @@ def load_config(path: Path) -> PlannerConfig:
         ),
         ("state", {"rest": "rest", "presence": "presence", "tolerance": "tolerance"}),
         ("mixing", {"radius": "radius"}),
-        ("words", {"window_s": "word_window_s"}),
+        ("words", {"window_s": "word_window_s", "lead_in_s": "lead_in_s", "stress": "stress"}),
     ):
         node = root.get(section)
         for key, value in node.only(*names).items() if node else []:
             name = names[key.as_str()]
             if name in ("least_s", "minimum"):
                 values[name] = _per_layer(value, LAYERS, 0.0, 60.0 if name == "least_s" else 1.0)
+            elif name == "stress":
+                values[name] = _stress(value)
             elif name == "settled":
                 values[name] = tuple(item.as_str() for item in value)
             elif name == "rest":
@@ -105,6 +112,19 @@ def load_config(path: Path) -> PlannerConfig:
         return PlannerConfig(**values)  # type: ignore[arg-type]  # checked key by key above
     except BadInput as error:
         raise BadInput(error.message, where=root.where) from None
+
+
+def _stress(node: Node) -> StressRule:
+    node.only("units", "least_s", "apart_s", "clear_s", "unstressed")
+    values: dict[str, object] = {
+        name: node[name].as_float(0.0, 60.0) for name in ("least_s", "apart_s", "clear_s") if name in node
+    }
+    if "units" in node:
+        values["units"] = tuple(item.as_str() for item in node["units"])
+    if "unstressed" in node:
+        words = node["unstressed"].items()
+        values["unstressed"] = {key.as_str(): frozenset(item.as_str() for item in row) for key, row in words}
+    return StressRule(**values)  # type: ignore[arg-type]  # checked key by key above
 
 
 def _per_layer(node: Node, layers: tuple[str, ...], low: float, high: float) -> dict[str, float]:

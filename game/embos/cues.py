@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.embos.library import UnitLibrary
+from game.embos.stress import StressRule, stressed_moments
 
 __all__ = ["GestureCues", "timed_tokens"]
 
@@ -87,11 +88,52 @@ class GestureCues:
         )
 
     @classmethod
+    def from_line(
+        cls,
+        library: UnitLibrary,
+        text: str,
+        char_s: Sequence[float],
+        language: str,
+        *,
+        shown: NDArray[np.bool_],
+        stress: StressRule,
+    ) -> GestureCues:
+        """Cues of a line with its timing: words that call up gestures, and beats on stressed words between them.
+
+        char_s: seconds of each character, on any clock; shown: (G,) gestures the present feeling knows, the others
+        compete with no beat.
+        """
+        own = cls.from_tokens(library, _tokens(text, char_s, language), language)
+        taken_s = own.time_s[shown[own.gesture]].tolist() if own.gesture.size else []
+        names = [library.units[unit].name for unit in library.gestures]
+        beats = [column for column, name in enumerate(names) if name in stress.units and shown[column]]
+        moments = stressed_moments(text, char_s, language, stress, taken_s) if beats else []
+        pairs = {*zip(own.time_s.tolist(), own.gesture.tolist(), strict=True)}
+        found = sorted(pairs | {(moment, column) for moment in moments for column in beats})
+        return cls(
+            np.array([column for _, column in found], dtype=np.intp),
+            np.array([time_s for time_s, _ in found], dtype=np.float64),
+            own.count,
+        )
+
+    @classmethod
     def from_text(
         cls, library: UnitLibrary, text: str, start_s: float, length_s: float, language: str = "en"
     ) -> GestureCues:
         """Cues of a line spoken from start_s for length_s."""
         return cls.from_tokens(library, timed_tokens(text, start_s, length_s, language), language)
+
+    def later(self, seconds: float) -> GestureCues:
+        """The same cues on a clock that is ahead by so many seconds."""
+        return GestureCues(self.gesture, self.time_s + seconds, self.count)
+
+    def preparation_s(self, lead_s: Floats, shown: NDArray[np.bool_]) -> float:
+        """How long before the line its first gestures have to start, seconds, at least 0.
+
+        lead_s: (G,) from start to stroke; shown: (G,) which gestures count. For cues counted from the line's start.
+        """
+        early = (lead_s[self.gesture] - self.time_s)[shown[self.gesture]]
+        return max(float(early.max()), 0.0) if early.size else 0.0
 
     def factors(self, time_s: float, lead_s: Floats | None = None, window_s: float = 0.1) -> Floats:
         """(G,) word factor: 1 where a cue's window is open, else 0.
@@ -104,6 +146,13 @@ class GestureCues:
             at = self.time_s if lead_s is None else self.time_s - lead_s[self.gesture]
             result[self.gesture[np.abs(time_s - at) <= 0.5 * window_s]] = 1.0
         return result
+
+
+def _tokens(text: str, char_s: Sequence[float], language: str) -> list[tuple[str, float]]:
+    """(token, moment): words where they are spaced, else the rest of the line at every character."""
+    if language in _BY_SUBSTRING:
+        return [(text[i:], at) for i, at in enumerate(char_s)]
+    return [(m.group(), char_s[m.start()]) for m in _WORD.finditer(text)]
 
 
 def _moments(word: str, timed: Sequence[tuple[str, float]], language: str) -> list[float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from game.embos import (
     ClipBank,
     MotionUnit,
     PlannerConfig,
+    StressRule,
     TakeClip,
     UnitLibrary,
     Variant,
@@ -188,7 +190,9 @@ def test_no_archive_a_cut_archive_and_a_bomb_are_refused(tmp_path: Path, monkeyp
 
 def test_planner_yaml_states_the_defaults_and_refuses_slips(tmp_path: Path) -> None:
     shipped = ASSETS / "motion" / "planner.yaml"
-    assert load_config(shipped) == PlannerConfig()
+    config = load_config(shipped)
+    assert replace(config, stress=StressRule()) == PlannerConfig()  # names and words belong to the repertoire
+    assert set(config.stress.units) <= set(UnitLibrary.load(ASSETS / "motion" / "units.yaml").index)
     path = tmp_path / "planner.yaml"
     text = shipped.read_text("utf-8")
     for old, new, said in (
@@ -196,6 +200,8 @@ def test_planner_yaml_states_the_defaults_and_refuses_slips(tmp_path: Path) -> N
         ("steady: 0.5", "steady: 5", "planner.yaml:.*steady"),
         ("[posture, gesture, mannerism]", "[posture, gesture]", "each of"),
         ("least_s: {posture: 1.0,", "least_s: {posture: -1.0,", "planner.yaml:"),
+        ("apart_s: 1.4", "apart_s: 1000", "planner.yaml:"),
+        ("clear_s: 0.7", "clearing_s: 0.7", "did you mean 'clear_s'"),
     ):
         assert old in text
         path.write_text(text.replace(old, new), "utf-8")
