@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -102,7 +103,8 @@ def _stand(performer: Performer, planner: Planner, n: int) -> tuple[PerformerSta
         said[:, 0] = float(50 <= tick < 55)
         plan, decisions = planner.advance(plan, PlannerSignal(felt, said, tick * _TICK_S), _TICK_S)
         state, pose = performer.advance(state, decisions, signal, _TICK_S)
-    _, decisions = planner.advance(plan, PlannerSignal(felt, words, 2.0), _TICK_S)
+    # Most ticks start nothing: the decision stands.
+    decisions = replace(decisions, started=np.zeros_like(decisions.started))
     return state, decisions, signal, pose
 
 
