@@ -141,7 +141,11 @@ def perform_hand(
     shiver: Floats,
     fidget: Floats,
 ) -> HandPath:
-    """Keys of one hand -> where it is. position (F, J, 3), rotation (F, J, 4): the trunk; shiver (F, 3), fidget (F, 4)."""
+    """Keys of one hand -> where it is over time.
+
+    position (F, J, 3), rotation (F, J, 4): the trunk in model space; shiver (F, 3) metres, always felt;
+    fidget (F, 4): metres and degrees of curl, only for a hand that touches nothing.
+    """
     turns: dict[HandKey, Floats] = {}
     path = _follow(track, side, time, position, rotation, turns)
     # A touching hand rides on what it touches; only what the hand itself does goes through its spring. So the path

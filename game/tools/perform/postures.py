@@ -48,7 +48,7 @@ POSTURES: Mapping[str, Posture] = MappingProxyType(
             "limp_a", "limp_b", 1.0, lean=4, curl=8, shoulders=-5, shoulders_forward=5, up=-0.012, head_pitch=6
         ),
         "self_hug": _of(
-            "hug_in", "hug_out", 0.6, curl=9, shoulders=10, shoulders_forward=8, lean=-1, head_pitch=5, head_roll=4
+            "hug_in", "hug_out", 0.6, curl=11, shoulders=12, shoulders_forward=10, lean=-1, head_pitch=7, head_roll=5
         ),
         "turned_away": _of(
             "aside",
