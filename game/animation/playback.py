@@ -160,6 +160,10 @@ def _drifted(bank: MotionBank, state: Playback, emotion: Floats, posture_layer: 
 
 def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats]:
     """Frame (n, L) in a unit that plays once, frames per second there, and the repeats made so far."""
+    if np.count_nonzero(state.active) == len(elapsed_s):
+        # Only postures are running, and those loop.
+        nothing = np.zeros_like(elapsed_s)
+        return nothing, nothing.copy(), state.lap
     before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times = state.timing.transpose(2, 0, 1)
     past = elapsed_s - before
     at = np.minimum(elapsed_s, before) * lead + np.maximum(past, np.float32(0.0)) * after
