@@ -29,6 +29,8 @@ __all__ = ["AuthorWindow", "open_author"]
 
 HEAD = 360
 IDLE_S = 0.25
+FOCUS_FRAMES = 6
+"""ImGui gives a text field the keys some frames after it was asked to; what is typed meanwhile waits this long."""
 _ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 _LOCKS = {pygame.K_e: "eyes", pygame.K_b: "eyebrows", pygame.K_m: "mouth", pygame.K_s: "skin"}
 _RANKS = "1234567890-="
@@ -53,6 +55,7 @@ class AuthorWindow:
         self._hovered: Face | None = None
         self._name = self._label = ""
         self._focus_name = False
+        self._focus_frames = 0
         self.running = True
         self._k = 1.0
 
@@ -79,7 +82,7 @@ class AuthorWindow:
             elif event.key == pygame.K_z:
                 author.undo()
             elif event.key == pygame.K_s:
-                self._focus_name = True
+                self._focus_name, self._focus_frames = True, FOCUS_FRAMES
         elif event.key in _ARROWS:
             author.nudge(*_ARROWS[event.key], fine=bool(event.mod & pygame.KMOD_SHIFT))
         elif event.key in _LOCKS:
@@ -294,14 +297,16 @@ class AuthorWindow:
         pygame.key.set_repeat(350, 40)
         before = time.perf_counter()
         busy = 3
+        waiting: list[pygame.event.Event] = []
         while self.running:
-            events = pygame.event.get()
-            if not events and busy <= 0:
-                events = [pygame.event.wait(int(IDLE_S * 1000))]
-            for event in events:
-                self.handle(event)
+            waiting += pygame.event.get()
+            if not waiting and busy <= 0:
+                waiting = [pygame.event.wait(int(IDLE_S * 1000))]
             # ImGui needs a few frames to settle after every event: hover, focus, fading.
-            busy = 4 if events else busy - 1
+            busy = 4 if waiting else busy - 1
+            self._focus_frames = 0 if self._backend.typing else max(self._focus_frames - 1, 0)
+            while waiting and not self._focus_frames:
+                self.handle(waiting.pop(0))
             now = time.perf_counter()
             if self.draw(now - before):
                 busy = max(busy, 2)

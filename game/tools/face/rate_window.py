@@ -47,6 +47,7 @@ class RateScreen:
         self.running = True
         self._clock = clock
         self._dragging = False
+        self._warned = False
         self._buttons = Buttons()
 
     def handle(self, event: pygame.event.Event, to_reference: Callable[[tuple[int, int]], tuple[float, float]]) -> bool:
@@ -100,10 +101,10 @@ class RateScreen:
         return False
 
     def _leave(self) -> bool:
-        """Close; a point that has been set is a rating and is kept."""
-        if self.sitting.point is not None:
-            self.sitting.confirm(self._clock())
-        self.running = False
+        """Close; a point that has been set is a rating and is kept. Where it cannot be, the first try only says so."""
+        unsaved = self.sitting.point is not None and not self.sitting.confirm(self._clock())
+        self.running = unsaved and not self._warned
+        self._warned = unsaved
         return True
 
     def draw(self, canvas: Canvas, head: moderngl.Texture | None) -> None:
@@ -127,7 +128,10 @@ class RateScreen:
         self._buttons.draw(canvas, self._paint)
         canvas.bar(Rect(716, 572, 500, 6), sitting.done / max(sitting.total, 1), PALETTE["teal"], PALETTE["paper_warm"])
         note = sitting.message or "Click or arrows: place it.  1–7: name it, or not.  Enter: next.  Backspace: undo."
-        canvas.text(716, 690, note, 16, PALETTE["red"] if sitting.message else PALETTE["faint"])
+        size = 16.0
+        while canvas.measure(note, size) > 550 and size > 10:
+            size -= 1
+        canvas.text(716, 690, note, size, PALETTE["red"] if sitting.message else PALETTE["faint"])
 
     def _lay(self) -> None:
         active = self.sitting.face is not None
@@ -226,19 +230,15 @@ def run_rating(args: argparse.Namespace) -> int:
     """Open the window and rate until all faces are done or it is closed."""
     asset = load_face(args.face_folder)
     faces = faces_to_rate(args, asset.model.parts)
-    log = RatingLog(args.out, asset.model.parts)
+    sitting = Sitting(RatingLog(args.out, asset.model.parts), faces, args.rater, args.seed)
+    _need_display()
+    device = Device.window(args.size[0], args.size[1], "How does this face feel?")
+    window = _RateWindow(device, asset, RateScreen(sitting, _now))
     try:
-        sitting = Sitting(log, faces, args.rater, args.seed)
-        _need_display()
-        device = Device.window(args.size[0], args.size[1], "How does this face feel?")
-        window = _RateWindow(device, asset, RateScreen(sitting, _now))
-        try:
-            window.run()
-        finally:
-            window.close()
-            device.release()
-            pygame.display.quit()
+        window.run()
     finally:
-        log.close()
+        window.close()
+        device.release()
+        pygame.display.quit()
     print(f"{sitting.done} of {sitting.total} faces rated by {sitting.rater} in {args.out}")
     return 0

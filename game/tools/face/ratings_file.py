@@ -155,24 +155,32 @@ class RatingLog:
                 text = decode_utf8(data[:keep], path)
             if text:
                 self.ratings = _parse(text, path, parts)
-        try:
-            self._file = path.open("r+b" if path.exists() else "x+b")
-            if keep is not None:
-                self._file.truncate(keep)
-            if self._file.seek(0, os.SEEK_END) == 0:
-                self._write(format_row(COLUMNS))
-        except OSError as error:
-            raise BadInput(where=Where(path), expected="a file that can be written", seen=error.strerror) from None
+        if keep is not None:
+            self._cut(keep)
+        if not path.exists() or path.stat().st_size == 0:
+            self._write(format_row(COLUMNS))
 
     def _write(self, text: str) -> tuple[int, int]:
-        start = self._file.seek(0, os.SEEK_END)
+        before = self.path.stat().st_size if self.path.exists() else 0
         try:
-            self._file.write(text.encode("utf-8"))
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            with self.path.open("ab") as file:
+                start = file.seek(0, os.SEEK_END)
+                file.write(text.encode("utf-8"))
+                file.flush()
+                os.fsync(file.fileno())
+                return start, file.tell()
         except OSError as error:
-            raise BadInput(where=Where(self.path), expected="room for one more rating", seen=error.strerror) from None
-        return start, self._file.tell()
+            if self.path.exists() and self.path.stat().st_size > before:
+                self._cut(before)  # half a row on a full disk
+            raise BadInput(where=Where(self.path), expected="a file that can be written", seen=error.strerror) from None
+
+    def _cut(self, length: int) -> None:
+        try:
+            with self.path.open("r+b") as file:
+                file.truncate(length)
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise BadInput(where=Where(self.path), expected="a file that can be written", seen=error.strerror) from None
 
     def append(self, rating: Rating) -> None:
         """Write one rating and wait until the disk has it. Raises BadInput where that is impossible."""
@@ -184,14 +192,8 @@ class RatingLog:
         if not self._written:
             return None
         start, end = self._written[-1]
-        if self._file.seek(0, os.SEEK_END) != end:
+        if not self.path.exists() or self.path.stat().st_size != end:
             return None
-        self._file.truncate(start)
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        self._cut(start)
         self._written.pop()
         return self.ratings.pop()
-
-    def close(self) -> None:
-        """Close the file; nothing is waiting to be written."""
-        self._file.close()

@@ -87,14 +87,16 @@ class Sitting:
             self.name = "" if self.name == name else name
 
     def confirm(self, time: str) -> bool:
-        """Write the rating and go on to the next face. False where no point has been set yet.
-
-        Raises BadInput where it cannot be written; then the face and the point stay.
-        """
+        """Write the rating and go on to the next face. False where no point has been set yet, or where it cannot be
+        written; then face and point stay, and ``message`` says why."""
         if self.face is None or self.point is None:
             self.message = "Click where this face lies first." if self.face is not None else ""
             return False
-        self.log.append(Rating(self.rater, self.face, *self.point, self.name, time))
+        try:
+            self.log.append(Rating(self.rater, self.face, *self.point, self.name, time))
+        except BadInput as error:
+            self.message = f"Not saved! {error}"
+            return False
         self._left.pop(0)
         self.point, self.name, self.message = None, "", ""
         return True
