@@ -5,7 +5,7 @@ import os
 # One body's matrices are far too small to share among threads; a second BLAS thread only gets in the way.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from game.app.cli import main  # noqa: E402 - the number of threads is read when NumPy loads
+from game.app.cli import main
 
 if __name__ == "__main__":
     raise SystemExit(main())
