@@ -37,7 +37,7 @@ from game.app.world import TICK_S, World, leave_talk
 from game.core.errors import BadInput, MissingPart
 from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Renderer, level_named, pick_level
 
-__all__ = ["Window", "add_arguments", "run"]
+__all__ = ["Window", "add_arguments", "need_display", "run"]
 
 CAMERAS = {TableScreen: TALK_CAMERA, TalkScreen: TALK_CAMERA, OutcomeScreen: SIDE_CAMERA}
 MAX_TICKS_A_FRAME = 5
@@ -222,7 +222,7 @@ def _choose_level(window: Window, settings: Settings) -> None:
 def run(args: argparse.Namespace) -> int:
     """Open the window and play until it is closed."""
     try:
-        _need_display()
+        need_display()
         session = open_session(args)
         width, height = args.size
         device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)
@@ -243,7 +243,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _need_display() -> None:
+def need_display() -> None:
     """Start SDL's video. Raises MissingPart where there is no screen (SDL would quietly draw into nothing)."""
     nowhere = MissingPart("no display (no X11 or Wayland session found); start a desktop session, or xvfb-run")
     # Windows would otherwise blow up a small picture on a dense screen.

@@ -13,7 +13,7 @@ from pathlib import Path
 import pygame
 from imgui_bundle import imgui
 
-from game.app.play import _need_display
+from game.app.play import need_display
 from game.core import ASSETS, DIALOGUE, EMOTIONS
 from game.face import Face, load_face
 from game.render import Device, level_named
@@ -326,7 +326,7 @@ def open_author(args: argparse.Namespace) -> int:
     # The game's own expressions are also listed where dialogue lines look for them.
     shipped = save_to.resolve() == (ASSETS / "face" / "expressions.yaml").resolve()
     author = Author(load_face(folder), save_to, DIALOGUE / "faces.yaml" if shipped else None)
-    _need_display()
+    need_display()
     device = Device.window(args.size[0], args.size[1], "Faces")
     window = AuthorWindow(device, author)
     try:

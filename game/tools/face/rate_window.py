@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 import pygame
 
-from game.app.play import _need_display
+from game.app.play import need_display
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
 from game.core import EMOTIONS
 from game.face import Face, FaceAsset, Parts, load_face
@@ -230,8 +230,8 @@ def run_rating(args: argparse.Namespace) -> int:
     """Open the window and rate until all faces are done or it is closed."""
     asset = load_face(args.face_folder)
     faces = faces_to_rate(args, asset.model.parts)
+    need_display()
     sitting = Sitting(RatingLog(args.out, asset.model.parts), faces, args.rater, args.seed)
-    _need_display()
     device = Device.window(args.size[0], args.size[1], "How does this face feel?")
     window = _RateWindow(device, asset, RateScreen(sitting, _now))
     try:
