@@ -24,7 +24,6 @@ __all__ = [
     "Breath",
     "Cue",
     "Effort",
-    "Line",
     "Score",
     "Target",
     "load_effort",
@@ -122,15 +121,6 @@ class Cue:
 
 
 @dataclass(frozen=True)
-class Line:
-    """One line of the scene and when it starts."""
-
-    name: str
-    start_s: float
-    length_s: float
-
-
-@dataclass(frozen=True)
 class Score:
     """The choreography of one take."""
 
@@ -138,7 +128,6 @@ class Score:
     emotion: str
     seed: int
     length_s: float
-    lines: tuple[Line, ...]
     cues: tuple[Cue, ...]
 
 
@@ -260,14 +249,17 @@ def load_score(emotion: str, folder: Path = MOTION / "scores") -> Score:
     """The score of one emotion's take; a cue's ``at`` counts from the start of its line in the scene."""
     root = load_yaml(folder / f"{emotion}.yaml").only("take", "emotion", "seed", "scene")
     start = 0.0
-    lines, cues = [], []
+    cues = []
     for line in root["scene"].as_list():
         line.only("line", "length_s", "do")
         length = line["length_s"].as_float(1, 120)
-        lines.append(Line(line["line"].as_str(), start, length))
+        if not line["line"].as_str():
+            raise line["line"].error(expected="the name of a line of the scene")
         for cue in line["do"].as_list():
             cue.only("at", "do", "hold", "size", "side", "words", "with", "tempo", "hands")
             side = cue.get("side")
+            if side is not None and side.as_str() not in ("left", "right"):
+                raise side.error(expected="left or right")
             words = cue.get("words")
             hands = cue.get("hands")
             hold, size, tempo = cue.get("hold"), cue.get("size"), cue.get("tempo")
@@ -286,6 +278,4 @@ def load_score(emotion: str, folder: Path = MOTION / "scores") -> Score:
             )
         start += length
     cues.sort(key=lambda cue: cue.at_s)
-    return Score(
-        root["take"].as_str(), root["emotion"].as_str(), root["seed"].as_int(0, 2**31), start, tuple(lines), tuple(cues)
-    )
+    return Score(root["take"].as_str(), root["emotion"].as_str(), root["seed"].as_int(0, 2**31), start, tuple(cues))

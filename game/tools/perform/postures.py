@@ -95,7 +95,7 @@ def take_posture(stage: Stage, cue: Cue, owner: int) -> float:
     ease = getattr(stage.effort, posture.ease)
     sign = -1.0 if cue.side == "right" else 1.0
     trunk = {name: value * (sign if name in MIRRORED else 1.0) for name, value in posture.trunk.items()}
-    stage.posture(cue, owner, trunk, posture.reach_s * tempo, ease)
+    stage.posture(cue, trunk, posture.reach_s * tempo, ease)
     main, other = cue.hands or (posture.main, posture.other)
     for i, (side, target) in enumerate(((cue.side, main), (other_side(cue.side), other))):
         stage.hands[side].home.append(

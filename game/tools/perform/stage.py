@@ -13,7 +13,7 @@ from game.core.errors import BadInput
 from game.tools.perform.arms import SIDES
 from game.tools.perform.body import CHANNELS, MIRRORED
 from game.tools.perform.data import Cue, Effort, Target
-from game.tools.perform.timing import DT_S, Ease, blend_scalar, smooth_window
+from game.tools.perform.timing import Ease, blend_scalar, smooth_window
 
 __all__ = ["Curve", "HandKey", "Move", "Stage", "other_side"]
 
@@ -84,7 +84,7 @@ class Stage:
             found = replace(found, curls=self.presets[preset])
         return found
 
-    def posture(self, cue: Cue, owner: int, channels: Mapping[str, float], duration_s: float, how: Ease) -> None:
+    def posture(self, cue: Cue, channels: Mapping[str, float], duration_s: float, how: Ease) -> None:
         """From now on the trunk stands like this: the posture, the emotion's carriage and what the score adds."""
         carriage = self.effort.carriage
         for name in CHANNELS:
@@ -221,8 +221,3 @@ class Move:
     def shown_until(self) -> float:
         """When an annotator would end the span: most of the way back."""
         return self.leave + 0.75 * (self.end - self.leave)
-
-    @property
-    def frame_s(self) -> float:
-        """Length of a frame, seconds."""
-        return DT_S
