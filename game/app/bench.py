@@ -3,6 +3,7 @@
 examples:
   run_game.py bench
   run_game.py bench planner render --json
+  run_game.py bench observer                  can the feeling be told from the body? (not part of plain bench)
 
 A floor is the least code that does the same work: NumPy alone, a bare scene, a hand-written loop. Benchmarks are no
 tests: absolute figures drift from machine to machine, the ratios tell.
@@ -28,6 +29,7 @@ __all__ = ["BENCHES", "add_arguments", "first_frame", "run"]
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``bench``."""
     parser.add_argument("what", nargs="*", choices=[*BENCHES, []], metavar="WHAT", help=f"of {' '.join(BENCHES)}")
+    parser.add_argument("--quick", action="store_true", help="observer: fewer performances, no second observers")
     parser.add_argument("--json", action="store_true", help="machine-readable")
 
 
@@ -113,23 +115,35 @@ def start() -> list[Row]:
     return [row("start: to the first frame", seconds, unit="s", floor=statistics.median(bare), wanted="<= 2.5 s")]
 
 
+def observer(quick: bool = False) -> list[Row]:
+    """What an observer who learnt from the takes tells from generated bodies; no speed, so not part of plain bench."""
+    from game.app import bench_observer
+
+    return bench_observer.rows(quick)
+
+
 BENCHES: dict[str, Callable[[], list[Row]]] = {
     "pose": pose,
     "planner": planner,
     "render": render,
     "autoplay": autoplay,
     "start": start,
+    "observer": observer,
 }
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the chosen benches and print one table, or one JSON document."""
     results: dict[str, list[dict[str, Any]]] = {}
-    for name in args.what or list(BENCHES):
-        rows = BENCHES[name]()
+    for name in args.what or [name for name in BENCHES if name != "observer"]:
+        rows = observer(args.quick) if name == "observer" else BENCHES[name]()
         results[name] = rows
         if not args.json:
             _print(name, rows)
+        if name == "observer" and not args.json:
+            from game.app.bench_observer import show
+
+            show(rows)
     if args.json:
         print(json.dumps(results, ensure_ascii=False))
     return 0
