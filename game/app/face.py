@@ -26,9 +26,9 @@ __all__ = ["add_arguments", "run"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``face`` and of its own commands."""
-    parser.add_argument("--face-folder", type=Path, default=ASSETS / "face", metavar="DIR", help="parts, weights, …")
+    _folder(parser, ASSETS / "face")
+    _size(parser, (1280, 720))
     parser.add_argument("--save-to", type=Path, metavar="FILE", help="where the window saves named expressions")
-    parser.add_argument("--size", type=parse_size, default=(1280, 720), metavar="WxH", help="window size")
     commands = parser.add_subparsers(dest="face_command", metavar="WHAT")
     _suggest(commands.add_parser("suggest", help="faces for an emotion, best first"))
     _rate(commands.add_parser("rate", help="a window in which a person rates faces"))
@@ -36,7 +36,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _simulate(commands.add_parser("simulate", help="ratings by simulated people, and how many people are enough"))
 
 
+def _folder(parser: argparse.ArgumentParser, default: object = argparse.SUPPRESS) -> None:
+    # Understood before and after the command's name; what is not given there must not hide what was given before it.
+    parser.add_argument("--face-folder", type=Path, default=default, metavar="DIR", help="parts, weights, …")
+
+
+def _size(parser: argparse.ArgumentParser, default: object = argparse.SUPPRESS) -> None:
+    parser.add_argument("--size", type=parse_size, default=default, metavar="WxH", help="window size (1280x720)")
+
+
 def _suggest(parser: argparse.ArgumentParser) -> None:
+    _folder(parser)
     parser.add_argument("--valence", type=float, help="unpleasant -1 … pleasant 1")
     parser.add_argument("--arousal", type=float, help="sleepy -1 … awake 1")
     parser.add_argument("--spread", metavar="SD[,SD[,R]]", help="want a Gaussian: deviations, correlation")
@@ -50,6 +60,8 @@ def _suggest(parser: argparse.ArgumentParser) -> None:
 
 
 def _rate(parser: argparse.ArgumentParser) -> None:
+    _folder(parser)
+    _size(parser)
     parser.add_argument("--rater", required=True, metavar="NAME", help="who rates")
     parser.add_argument("--out", type=Path, required=True, metavar="CSV", help="appended to; resumes where it stopped")
     which = parser.add_mutually_exclusive_group()
@@ -59,6 +71,7 @@ def _rate(parser: argparse.ArgumentParser) -> None:
 
 
 def _fit(parser: argparse.ArgumentParser) -> None:
+    _folder(parser)
     parser.add_argument("ratings", type=Path, metavar="RATINGS.csv")
     parser.add_argument("--out-parts", type=Path, metavar="YAML", help="write parts with the rated Gaussians")
     parser.add_argument("--out-weights", type=Path, metavar="YAML", help="write the fitted weights")
@@ -69,6 +82,7 @@ def _fit(parser: argparse.ArgumentParser) -> None:
 
 
 def _simulate(parser: argparse.ArgumentParser) -> None:
+    _folder(parser)
     parser.add_argument("--raters", type=int, default=32, help="how many simulated people (default 32)")
     parser.add_argument("--faces", type=int, default=81, metavar="N", help="whole faces each rates (default 81)")
     parser.add_argument("--out", type=Path, metavar="CSV", help="write their ratings")

@@ -134,6 +134,20 @@ def test_locked_regions_stay(author):
     assert "eyebrows" not in author.draft.locked
 
 
+def test_a_name_tells_what_the_point_cannot(author):
+    author.go_to(EMOTION_INDEX["fear"])
+    fear = [f.face for f in author.found]
+    author.nudge(0, 0)
+    assert author.draft.emotion is None
+    author.go_to(EMOTION_INDEX["anger"])
+    angry = [f.face for f in author.found]
+    assert not set(fear) & set(angry)
+    regions = author.parts.regions
+    for name, faces in (("fear", fear), ("anger", angry)):
+        worn = [r.affinity[r.index(p)] for r, p in zip(regions, faces[0].parts, strict=True)]
+        assert int(np.sum(worn, axis=0).argmax()) == EMOTION_INDEX[name]
+
+
 def test_compare_keep_and_recall(author):
     author.choose(0)
     first = author.draft.face

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from game.core import BadInput
+from game.core import EMOTIONS, BadInput
 from game.face import REGIONS, Face, FaceAsset, NamedExpression, Parts, load_expressions
 from game.tools.face.wanted import COHERENCE, Found, Proposer, Wanted
 from game.tools.face.yaml_edit import add_expression, add_to_dialogue, check_name
@@ -26,11 +26,13 @@ MAX_UNDO = 500
 class Draft:
     """One state of the work, immutable: what undo goes back to.
 
-    spread: deviation of a wanted Gaussian, 0 for a point; kept: the faces A and B.
+    spread: deviation of a wanted Gaussian, 0 for a point; emotion: one of the seven where a name was asked for, which
+    tells fear from anger; kept: the faces A and B.
     """
 
     point: tuple[float, float] = (0.0, 0.0)
     spread: float = 0.0
+    emotion: int | None = None
     coherence: float = COHERENCE
     diverse: bool = True
     face: Face = field(default_factory=Face)
@@ -63,9 +65,10 @@ class Author:
 
     @property
     def wanted(self) -> Wanted:
-        """What the point and the spread ask for."""
-        spread = self.draft.spread
-        return Wanted(self.draft.point, np.eye(2) * spread**2 if spread > 0.0 else None)
+        """What the point, its spread or the name ask for."""
+        spread, emotion = self.draft.spread, self.draft.emotion
+        values = None if emotion is None else np.eye(len(EMOTIONS))[emotion]
+        return Wanted(self.draft.point, np.eye(2) * spread**2 if spread > 0.0 else None, values)
 
     @property
     def found(self) -> list[Found]:
@@ -74,7 +77,7 @@ class Author:
         base = draft.face if draft.locked else None
         # The free regions of the base do not matter: choosing a proposal must not shuffle the list it stands in.
         key = [getattr(base, region) if base and region in draft.locked else None for region in REGIONS]
-        asked = (draft.point, draft.spread, draft.coherence, draft.diverse, *key)
+        asked = (draft.point, draft.spread, draft.emotion, draft.coherence, draft.diverse, *key)
         if asked != self._asked:
             free = [region for region in REGIONS if region not in draft.locked]
             self._found = self._proposer.find(
@@ -104,7 +107,7 @@ class Author:
         """Move the point while the mouse is held; one drag is one step to undo."""
         if self._before_drag is None:
             self._before_drag = self.draft
-        self.draft = replace(self.draft, point=_on_pad(valence, arousal))
+        self.draft = replace(self.draft, point=_on_pad(valence, arousal), emotion=None)
 
     def drop(self) -> None:
         """The mouse has let go."""
@@ -116,12 +119,12 @@ class Author:
         """Move the point by one step of the keys."""
         step = 0.01 if fine else 0.05
         v, a = self.draft.point
-        self._step(replace(self.draft, point=_on_pad(v + right * step, a + up * step)))
+        self._step(replace(self.draft, point=_on_pad(v + right * step, a + up * step), emotion=None))
 
     def go_to(self, emotion: int) -> None:
-        """Move the point to one of the seven."""
+        """Ask for one of the seven by name; the point goes where it stands."""
         v, a = self.parts.places[emotion]
-        self._step(replace(self.draft, point=_on_pad(float(v), float(a))))
+        self._step(replace(self.draft, point=_on_pad(float(v), float(a)), emotion=emotion))
 
     def choose(self, rank: int) -> None:
         """Take a proposal as the face, 0 the best."""

@@ -23,6 +23,7 @@ _COLOURS = {
     "green": "2F7D4F",
     "blank": "EADFC8",
     "paper": "FFFDF6",
+    "chosen": "F7D79A",
 }
 
 

@@ -156,8 +156,13 @@ class AuthorWindow:
         for i, name in enumerate(EMOTIONS):
             self._go(14 + i * 56.3, 444)
             imgui.push_font(self._fonts.body, 16.5 * self._k)
+            named = draft.emotion == i
+            if named:
+                imgui.push_style_color(imgui.Col_.button, colour("chosen"))
             if imgui.button(name, self._at(54, 26)):
                 author.go_to(i)
+            if named:
+                imgui.pop_style_color()
             imgui.pop_font()
         self._go(14, 482)
         changed, diverse = imgui.checkbox("different from each other", draft.diverse)
