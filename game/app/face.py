@@ -4,6 +4,7 @@ examples:
   run_game.py face                                                   the authoring window
   run_game.py face suggest --valence -0.7 --arousal 0.6 --top 12 --sheet out.png
   run_game.py face suggest --emotion joy=0.8,fear=0.2 --diverse --json
+  run_game.py face sheet seven --out seven.png
   run_game.py face rate --rater yuki --out ratings.csv
   run_game.py face fit ratings.csv --plots plots --out-parts parts.yaml --out-weights weights.yaml
   run_game.py face simulate --raters 32 --out simulated.csv
@@ -31,6 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--save-to", type=Path, metavar="FILE", help="where the window saves named expressions")
     commands = parser.add_subparsers(dest="face_command", metavar="WHAT")
     _suggest(commands.add_parser("suggest", help="faces for an emotion, best first"))
+    _sheet(commands.add_parser("sheet", help="a picture of all emotions, parts or named expressions"))
     _rate(commands.add_parser("rate", help="a window in which a person rates faces"))
     _fit(commands.add_parser("fit", help="part Gaussians and weights from ratings"))
     _simulate(commands.add_parser("simulate", help="ratings by simulated people, and how many people are enough"))
@@ -57,6 +59,12 @@ def _suggest(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--coherence", type=float, help="score for parts that say one emotion (0: the pure model)")
     parser.add_argument("--sheet", type=Path, metavar="PNG", help="draw them on the real head")
     parser.add_argument("--json", action="store_true", help="machine-readable")
+
+
+def _sheet(parser: argparse.ArgumentParser) -> None:
+    _folder(parser)
+    parser.add_argument("of", choices=["seven", "parts", "expressions"], help="what is drawn")
+    parser.add_argument("--out", type=Path, required=True, metavar="PNG")
 
 
 def _rate(parser: argparse.ArgumentParser) -> None:
@@ -97,6 +105,10 @@ def run(args: argparse.Namespace) -> int:
         from game.tools.face.suggest import suggest
 
         return suggest(args)
+    if args.face_command == "sheet":
+        from game.tools.face.overview import overview
+
+        return overview(args)
     if args.face_command in {"fit", "simulate"}:
         from game.tools.face import fit_command
 

@@ -280,6 +280,24 @@ def test_a_sheet_is_drawn_on_the_real_head(tmp_path):
 
 
 @pytest.mark.gl
+def test_the_seven_are_drawn_at_two_strengths(tmp_path):
+    import pygame
+
+    out = tmp_path / "seven.png"
+    assert main(["face", "sheet", "seven", "--out", str(out)]) == 0
+    picture = pygame.surfarray.array3d(pygame.image.load(out)).transpose(1, 0, 2).astype(int)
+    assert picture.shape[1] == 1280
+    assert picture.shape[0] <= 720
+    weak = [picture[110:210, 30 + i * 180 : 160 + i * 180] for i in range(7)]
+    strong = [picture[334:434, 30 + i * 180 : 160 + i * 180] for i in range(7)]
+    neutral = weak[6]
+    assert abs(neutral - strong[6]).mean() < 0.5
+    for faint, full in zip(weak[:6], strong[:6], strict=True):
+        assert abs(full - neutral).mean() > 2.0
+        assert abs(full - neutral).mean() >= abs(faint - neutral).mean()
+
+
+@pytest.mark.gl
 def test_one_head_after_the_other_leaks_no_face(asset):
     from game.tools.face.heads import HeadStudio
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.app.ui import INK, PALETTE, Canvas, Rect, fade
-from game.face import Face, Parts
+from game.face import Face, FaceParams, Parts
 from game.render import Device, FontSet, Hud
 from game.tools.face.heads import HeadStudio
 from game.tools.face.pad import Pad
 from game.tools.face.wanted import Found, Wanted
 
-__all__ = ["SheetRow", "draw_rows", "draw_sheet", "part_names", "rank_colour"]
+__all__ = ["SheetCell", "SheetRow", "draw_grid", "draw_rows", "draw_sheet", "part_names", "rank_colour"]
 
 Pixels = NDArray[np.uint8]
 Colour = tuple[float, float, float, float]
@@ -50,24 +50,38 @@ class SheetRow:
     found: Sequence[Found]
 
 
+@dataclass(frozen=True)
+class SheetCell:
+    """One expression (K,) with its name and a smaller line under it."""
+
+    params: FaceParams
+    name: str
+    note: str = ""
+    colour: Colour = PALETTE["line"]
+
+
 class _Sheet:
     """A picture of any size to draw heads, text and boxes into, on the head studio's GL."""
 
     def __init__(self, studio: HeadStudio, parts: Parts, width: int, height: int) -> None:
         self.parts, self._studio, self._size = parts, studio, (width, height)
-        self._heads: dict[Face, moderngl.Texture] = {}
+        self._heads: dict[Hashable, moderngl.Texture] = {}
         self._device: Device = studio.device
         self._hud = Hud(self._device, FontSet.for_language("en"))
 
     def load(self, faces: Sequence[Face]) -> None:
+        """Draw the heads of faces."""
+        self.load_params({face: self.parts.params(self.parts.numbers(face)) for face in faces})
+
+    def load_params(self, wanted: Mapping[Hashable, FaceParams]) -> None:
         """Draw the heads first: the renderer and the sheet do not take turns."""
-        for face in dict.fromkeys(faces):
-            pixels = self._studio.draw(self.parts.params(self.parts.numbers(face)))
+        for key, params in wanted.items():
+            pixels = self._studio.draw(params)
             opaque = np.dstack([pixels, np.full(pixels.shape[:2], 255, np.uint8)])
             texture = self._device.context.texture(pixels.shape[1::-1], 4, np.ascontiguousarray(opaque).tobytes())
             texture.build_mipmaps()
             texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-            self._heads[face] = texture
+            self._heads[key] = texture
 
     def begin(self) -> Canvas:
         self._target = self._device.context.simple_framebuffer(self._size, components=4)
@@ -77,7 +91,7 @@ class _Sheet:
         self._hud.begin(self._size, 720.0 / self._size[1])
         return Canvas(self._hud)
 
-    def head(self, canvas: Canvas, rect: Rect, face: Face, edge: Colour) -> None:
+    def head(self, canvas: Canvas, rect: Rect, face: Hashable, edge: Colour) -> None:
         k = canvas.hud.width / canvas.width
         canvas.panel(Rect(rect.x - 3, rect.y - 3, rect.w + 6, rect.h + 6), edge, radius=6)
         canvas.hud.image(self._heads[face], rect.x * k, rect.y * k, rect.w * k, rect.h * k)
@@ -140,7 +154,7 @@ def _cell(sheet: _Sheet, canvas: Canvas, rect: Rect, rank: int, found: Found) ->
     numbers = f"({mean[0]:+.2f}, {mean[1]:+.2f})   log p {found.log_density:+.2f}"
     canvas.text(rect.x, rect.y + HEAD + 5, numbers, 15, INK)
     names = part_names(sheet.parts, found.face)
-    rows = [", ".join(names[:2]), ", ".join(names[2:])]
+    rows = [" · ".join(names[:2]), " · ".join(names[2:])]
     for i, text in enumerate(rows):
         canvas.text(rect.x, rect.y + HEAD + 25 + i * 19, _fit(canvas, text, rect.w, 15), 15, PALETTE["faint"])
 
@@ -168,4 +182,25 @@ def draw_rows(studio: HeadStudio, parts: Parts, rows: Sequence[SheetRow], *, tit
             mean = found.proposal.mean
             text = f"{rank + 1}  ({mean[0]:+.2f}, {mean[1]:+.2f})  {found.log_density:+.1f}"
             canvas.text(x, y + head + 5, text, 13, INK)
+    return sheet.finish()
+
+
+def draw_grid(
+    studio: HeadStudio, parts: Parts, rows: Sequence[Sequence[SheetCell]], *, title: str, width: int = 1280
+) -> Pixels:
+    """Rows of expressions, as wide as ``width`` and as high as they need; wide rows make small heads."""
+    columns = max(len(row) for row in rows)
+    head = min((width - EDGE) // columns - EDGE, 300)
+    step = head + 58
+    sheet = _Sheet(studio, parts, width, 54 + len(rows) * step + EDGE)
+    sheet.load_params({(i, j): cell.params for i, row in enumerate(rows) for j, cell in enumerate(row)})
+    canvas = sheet.begin()
+    canvas.text(EDGE, 12, title, 24, INK, font="bold")
+    left = (width - columns * (head + EDGE) + EDGE) / 2
+    for i, row in enumerate(rows):
+        for j, cell in enumerate(row):
+            x, y = left + j * (head + EDGE), 56 + i * step
+            sheet.head(canvas, Rect(x, y, head, head), (i, j), cell.colour)
+            canvas.text(x, y + head + 5, _fit(canvas, cell.name, head, 18, "bold"), 18, INK, font="bold")
+            canvas.text(x, y + head + 28, _fit(canvas, cell.note, head, 14), 14, PALETTE["faint"])
     return sheet.finish()
