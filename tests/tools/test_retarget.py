@@ -153,6 +153,76 @@ def test_a_source_without_fingers_neck_or_spine_is_filled_in() -> None:
     assert np.quantile(_angle_deg(_directions(made.clip), _directions(retarget(take, options=PLAIN).clip)), 0.9) < 12.0
 
 
+SCHEMES = {
+    "biped": ("Bip01 Pelvis", "Bip01 Spine", "Bip01 Spine1", "Bip01 Neck", "Bip01 Head",
+              "Bip01 {S} Clavicle", "Bip01 {S} UpperArm", "Bip01 {S} Forearm", "Bip01 {S} Hand",
+              "Bip01 {S} Thigh", "Bip01 {S} Calf", "Bip01 {S} Foot", "Bip01 {S} Toe0"),
+    "unreal": ("pelvis", "spine_01", "spine_02", "neck_01", "head",
+               "clavicle_{s}", "upperarm_{s}", "lowerarm_{s}", "hand_{s}",
+               "thigh_{s}", "calf_{s}", "foot_{s}", "ball_{s}"),
+    "blender": ("DEF-hips", "DEF-spine.001", "DEF-spine.003", "DEF-neck", "DEF-head",
+                "DEF-shoulder.{S}", "DEF-upper_arm.{S}", "DEF-forearm.{S}", "DEF-hand.{S}",
+                "DEF-thigh.{S}", "DEF-shin.{S}", "DEF-foot.{S}", "DEF-toe.{S}"),
+    "smpl": ("Pelvis", "Spine1", "Spine3", "Neck", "Head",
+             "{S}_Collar", "{S}_Shoulder", "{S}_Elbow", "{S}_Wrist",
+             "{S}_Hip", "{S}_Knee", "{S}_Ankle", "{S}_Foot"),
+    "xsens": ("Pelvis", "L5", "T8", "Neck", "Head",
+              "{Side}Shoulder", "{Side}UpperArm", "{Side}ForeArm", "{Side}Hand",
+              "{Side}UpperLeg", "{Side}LowerLeg", "{Side}Foot", "{Side}Toe"),
+    "daz": ("hip", "abdomen", "chest", "neck", "head",
+            "{s}Collar", "{s}Shldr", "{s}ForeArm", "{s}Hand",
+            "{s}Thigh", "{s}Shin", "{s}Foot", "{s}Toe"),
+    "reallusion": ("CC_Base_Hip", "CC_Base_Waist", "CC_Base_Spine02", "CC_Base_NeckTwist01", "CC_Base_Head",
+                   "CC_Base_{S}_Clavicle", "CC_Base_{S}_Upperarm", "CC_Base_{S}_Forearm", "CC_Base_{S}_Hand",
+                   "CC_Base_{S}_Thigh", "CC_Base_{S}_Calf", "CC_Base_{S}_Foot", "CC_Base_{S}_ToeBase"),
+    "small letters": ("hips", "lowerback", "thorax", "neck", "head",
+                      "{s}clavicle", "{s}humerus", "{s}radius", "{s}wrist",
+                      "{s}femur", "{s}tibia", "{s}foot", "{s}toes"),
+}  # fmt: skip
+_TRUNK = ("hips", "spine", "chest", "neck", "head")
+_LIMB = ("Shoulder", "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes")
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_names_of_other_programs_are_known(scheme: str) -> None:
+    names = dict(zip(_TRUNK, SCHEMES[scheme], strict=False))
+    for side in ("left", "right"):
+        own = (n.format(S=side[0].upper(), s=side[0], Side=side.title()) for n in SCHEMES[scheme][len(_TRUNK) :])
+        names |= {side + part: name for part, name in zip(_LIMB, own, strict=True)}
+    keep = [j for j, name in enumerate(REFERENCE.names) if name in names]
+    parents = [keep.index(int(REFERENCE.parents[j])) if REFERENCE.parents[j] >= 0 else -1 for j in keep]
+    if scheme == "biped":
+        # Its collar bones hang on the neck.
+        for i, j in enumerate(keep):
+            if REFERENCE.names[j].endswith("Shoulder"):
+                parents[i] = keep.index(REFERENCE.index["neck"])
+    skeleton = Skeleton(tuple(names[REFERENCE.names[j]] for j in keep), np.array(parents),
+                        REFERENCE.rest_translation[keep], np.tile(quat.IDENTITY, (len(keep), 1)))  # fmt: skip
+    found = detect_map(skeleton)
+    assert {target: found.joints[target] for target in names} == {target: (name,) for target, name in names.items()}
+
+
+def test_joints_that_only_twist_are_passed_over() -> None:
+    names = ["hip", "abdomen", "chest", "neck", "head"]
+    parents = [-1, 0, 1, 2, 3]
+    for s in "lr":
+        for start, chain in (
+            (2, ("Collar", "ShldrBend", "ShldrTwist", "ForearmBend", "ForearmTwist", "Hand")),
+            (0, ("ThighBend", "ThighTwist", "Shin", "Foot")),
+        ):
+            above = start
+            for part in chain:
+                names.append(s + part)
+                parents.append(above)
+                above = len(names) - 1
+    skeleton = Skeleton(tuple(names), np.array(parents), np.ones((len(names), 3)),
+                        np.tile(quat.IDENTITY, (len(names), 1)))  # fmt: skip
+    found = detect_map(skeleton)
+    assert [found.one(f"left{part}") for part in ("Shoulder", "UpperArm", "LowerArm", "Hand")] == [
+        "lCollar", "lShldrBend", "lForearmBend", "lHand"]  # fmt: skip
+    assert [found.one(f"right{part}") for part in ("UpperLeg", "LowerLeg", "Foot")] == ["rThighBend", "rShin", "rFoot"]
+
+
 # --- refused -------------------------------------------------------------------------------------------------------
 def _renamed(clip: Clip, old: str, new: str) -> Clip:
     skeleton = clip.skeleton

@@ -27,18 +27,18 @@ _FINGER_NAMES = ("Thumb", *FINGERS)
 
 _ALIASES: Mapping[str, frozenset[str]] = {
     "head": frozenset({"head", "skull"}),
-    "hand": frozenset({"hand", "wrist"}),
-    "lowerArm": frozenset({"forearm", "lowerarm", "elbow", "lowarm", "radius"}),
-    "upperArm": frozenset({"arm", "upperarm", "uparm", "humerus"}),
+    "hand": frozenset({"hand", "wrist", "palm"}),
+    "lowerArm": frozenset({"forearm", "forearmbend", "lowerarm", "elbow", "lowarm", "radius"}),
+    "upperArm": frozenset({"arm", "upperarm", "uparm", "humerus", "shldr", "shldrbend"}),
     "foot": frozenset({"foot", "ankle"}),
-    "lowerLeg": frozenset({"leg", "lowerleg", "lowleg", "shin", "knee", "calf", "tibia"}),
-    "upperLeg": frozenset({"upleg", "upperleg", "thigh", "hip", "femur"}),
+    "lowerLeg": frozenset({"leg", "lowerleg", "lowleg", "shin", "knee", "calf", "tibia", "shinbend"}),
+    "upperLeg": frozenset({"upleg", "upperleg", "thigh", "thighbend", "hip", "femur"}),
     "toes": frozenset({"toe", "toes", "toebase", "ball", "toe0"}),
 }
 _FINGER_WORDS = {"thumb": 0, "index": 1, "middle": 2, "mid": 2, "ring": 3, "pinky": 4, "little": 4, "small": 4}
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+")
 _NAMESPACE = re.compile(r"^.*[:|]")
-_PREFIXES = re.compile(r"^(bip\d*|joint|def|org|b|jnt|j|character\d*|hum)(?=[ _.\-])[ _.\-]+", re.IGNORECASE)
+_PREFIXES = re.compile(r"^(bip\d*|cc_base|joint|def|org|b|jnt|j|character\d*|hum)[ _.\-]+", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -147,9 +147,12 @@ def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
             hint="name the joints in a map file: --map",
         )
     hips = tree.meeting(ends["leftfoot"], ends["rightfoot"])
-    # The carrier of the arms: where the two arms and the neck part.
+    # The carrier of the arms: where the two arms part.
     chest = tree.meeting(ends["lefthand"], ends["righthand"])
     trunk = tree.path(ends["head"])[1:]
+    while chest in trunk[:-1] and tree.parts[chest][1].rstrip("0123456789") == "neck":
+        # Some hang the collar bones on the neck; what turns the shoulders is below it.
+        chest = trunk[trunk.index(chest) + 1]
     if hips < 0 or chest not in trunk or hips not in trunk or tree.depth[chest] <= tree.depth[hips]:
         raise BadInput(
             "skeleton",
@@ -185,13 +188,6 @@ def _limb(tree: _Tree, end: int, trunk: int, roles: tuple[str, ...], where: Wher
     """End, lower bone, upper bone and, where there is one, the collar bone or pelvis spacer."""
     chain = tree.path(end)
     chain = chain[: chain.index(trunk)]
-    if len(chain) > 4:
-        # Twist joints: those are kept whose names tell what they are.
-        lower = next((i for i in chain[1:] if tree.parts[i][1] in _ALIASES[roles[1]]), chain[1])
-        after = chain[chain.index(lower) + 1 :]
-        upper = next((i for i in after if tree.parts[i][1] in _ALIASES[roles[2]]), after[0])
-        rest = chain[chain.index(upper) + 1 :]
-        chain = [end, lower, upper, *rest[:1]]
     if len(chain) < 3:
         raise BadInput(
             f"limb of {tree.names[end]!r}",
@@ -200,7 +196,12 @@ def _limb(tree: _Tree, end: int, trunk: int, roles: tuple[str, ...], where: Wher
             seen=" < ".join(tree.names[i] for i in chain) or "none",
             hint="name the joints in a map file: --map",
         )
-    return chain
+    # Between them there may be joints that only twist: names decide where they are known, else the order.
+    lower = next((i for i in chain[1:-1] if tree.parts[i][1] in _ALIASES[roles[1]]), chain[1])
+    after = chain[chain.index(lower) + 1 :]
+    upper = next((i for i in after if tree.parts[i][1] in _ALIASES[roles[2]]), after[0])
+    rest = chain[chain.index(upper) + 1 :]
+    return [end, lower, upper, *rest[:1]]
 
 
 def _fingers(tree: _Tree, side: str, hand: int) -> dict[str, list[int]]:
