@@ -2,10 +2,12 @@
 
 A joint's axes in a file mean whatever its program wanted. Two families are told apart:
 
-- The zero pose is a standing person (Poser, Mixamo, CMU): trunk, head and feet are as in the T-pose, arms and legs
-  are brought to it by the smallest turn that aligns their bones.
+- The zero pose is a standing person (Poser, Mixamo, CMU): trunk and head are as in the T-pose, arms and legs are
+  brought to it by the smallest turn that aligns their bones.
 - The zero pose is no pose (each joint's axes lie along its bone, MotionBuilder and others): the axes are told from
-  the bones and from how the body moves: elbows and knees are hinges, the hips carry both legs, soles lie flat.
+  the bones and from how the body moves: elbows and knees are hinges, the hips carry both legs.
+
+In both, soles lie flat when the foot is low, and palms are told from their knuckles.
 
 The result for a source joint j is C_j with: target rotation in the world = source rotation in the world · C_j.
 """
@@ -93,6 +95,7 @@ def corrections(source: Source) -> Correction:
     standing = stands_in_zero_pose(source)
     t_pose = _from_zero_pose(source, standing) if standing is not None else _from_movement(source)
     for side in SIDES:
+        _foot(source, side, t_pose)
         t_pose[source.index(f"{side}Hand")] = _hand(source, side, t_pose)
         _finger_bones(source, side, t_pose)
     return {joint: quat.conjugate(turn) for joint, turn in t_pose.items()}
@@ -140,7 +143,6 @@ def _from_movement(source: Source) -> Correction:
     for side in SIDES:
         for part in ("UpperLeg", "LowerLeg"):
             _bone(source, side + part, hips_left, _X, t_pose)
-        _foot(source, side, hips_left, t_pose)
         _arm(source, side, lateral, t_pose)
     return t_pose
 
@@ -185,22 +187,6 @@ def _bone(source: Source, target: str, world: Floats, to: Floats, t_pose: Correc
     t_pose[joint] = _map(along, _snapped(source.local_mean(joint, world)), bone[1], to)
 
 
-def _foot(source: Source, side: str, hips_left: Floats, t_pose: Correction) -> None:
-    """Soles lie flat when the foot is low: that is up; ahead is where the toes are, or where the hips look."""
-    joint = source.index(f"{side}Foot")
-    height = source.position[:, joint, 1]
-    low = (height <= np.quantile(height, 0.4)).astype(np.float64)
-    up = unit(source.local_mean(joint, UP, low))
-    toes = source.indices(f"{side}Toes")
-    ahead = _chain(source, joint, toes[0]) if toes else np.zeros(3)
-    if np.linalg.norm(ahead) < 1e-3 * source.leg:
-        ahead = source.local_mean(joint, np.cross(hips_left, UP))
-    rest = REFERENCE.rest_translation[REFERENCE.index[f"{side}Toes"]] * (1.0, 0.0, 1.0)
-    t_pose[joint] = _map(up, ahead, _Y, rest)
-    for toe in toes:
-        t_pose[toe] = t_pose[joint]
-
-
 def _arm(source: Source, side: str, lateral: Floats, t_pose: Correction) -> None:
     """Collar bone, upper arm by the elbow's hinge, forearm and hand with the axes of the upper arm."""
     chest = source.index("chest")
@@ -225,7 +211,23 @@ def _arm(source: Source, side: str, lateral: Floats, t_pose: Correction) -> None
     t_pose[source.index(f"{side}Hand")] = t_pose[source.index(f"{side}LowerArm")]
 
 
-# --- hands: the same for both families -----------------------------------------------------------------------------
+# --- feet and hands: the same for both families ---------------------------------------------------------------------
+def _foot(source: Source, side: str, t_pose: Correction) -> None:
+    """Soles lie flat when the foot is low: that is up; ahead is where the toes are, or where the hips look."""
+    joint = source.index(f"{side}Foot")
+    height = source.position[:, joint, 1]
+    low = (height <= np.quantile(height, 0.4)).astype(np.float64)
+    up = unit(source.local_mean(joint, UP, low))
+    toes = source.indices(f"{side}Toes")
+    ahead = _chain(source, joint, toes[0]) if toes else np.zeros(3)
+    if np.linalg.norm(ahead) < 1e-3 * source.leg:
+        ahead = source.local_mean(joint, np.cross(source.lateral(), UP))
+    rest = REFERENCE.rest_translation[REFERENCE.index[f"{side}Toes"]] * (1.0, 0.0, 1.0)
+    t_pose[joint] = _map(up, ahead, _Y, rest)
+    for toe in toes:
+        t_pose[toe] = t_pose[joint]
+
+
 def _hand(source: Source, side: str, t_pose: Mapping[int, Floats]) -> Floats:
     """The palm from its knuckles, else the forearm's."""
     hand = source.index(f"{side}Hand")
