@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 
 import numpy as np
 import pytest
 
-from game.core import ASSETS, BadInput
+from game.core import ASSETS, BadInput, MissingPart
 from game.face import REGIONS, Face, FaceModel, load_expressions, load_face, load_parts, load_weights
 from game.tools.face import fit_command
 from game.tools.face.fitting import FACES_NEEDED, fit_ratings
@@ -59,6 +60,8 @@ def test_simulated_raters_give_the_known_model_back(model, ratings, tmp_path):
     assert fit.held_out is not None
     assert len(fit.held_out.faces) == 16
     assert fit.held_out.r_squared.min() > 0.8
+    assert fit.held_out.deviation_rmse is not None
+    assert fit.held_out.deviation_rmse.max() < 0.15
     assert fit.simulated
     assert "simulated" in fit.label
 
@@ -177,6 +180,13 @@ def test_a_negative_weight_is_written_as_zero(model, tmp_path):
     assert fit.weights is not None
     assert fit.axes[0].weight[1] < 0
     assert (fit.weights[1] == 0).all()
+
+
+def test_without_matplotlib_plots_say_what_to_install(monkeypatch, ratings, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(MissingPart, match="reports"):
+        fit_command.fit(arguments(write(tmp_path / "r.csv", ratings), plots=tmp_path, out_parts=tmp_path / "p.yaml"))
+    assert not (tmp_path / "p.yaml").exists()
 
 
 def test_plots_are_drawn(model, ratings, tmp_path):

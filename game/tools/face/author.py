@@ -109,6 +109,12 @@ class Author:
             self._before_drag = self.draft
         self.draft = replace(self.draft, point=_on_pad(valence, arousal), emotion=None)
 
+    def slide(self, spread: float) -> None:
+        """Change the wanted spread while its slider is held; one slide is one step to undo."""
+        if self._before_drag is None:
+            self._before_drag = self.draft
+        self.draft = replace(self.draft, spread=round(float(np.clip(spread, 0.0, 1.0)), 2), emotion=None)
+
     def drop(self) -> None:
         """The mouse has let go."""
         if self._before_drag is not None:
@@ -149,16 +155,9 @@ class Author:
         else:
             self.message, self.failed = "One region has to stay free.", True
 
-    def adjust(self, *, spread: float | None = None, diverse: bool | None = None) -> None:
-        """Change how proposals are made."""
-        draft = self.draft
-        self._step(
-            replace(
-                draft,
-                spread=draft.spread if spread is None else float(np.clip(spread, 0.0, 1.0)),
-                diverse=draft.diverse if diverse is None else diverse,
-            )
-        )
+    def vary(self, diverse: bool) -> None:
+        """Whether proposals are to differ from each other."""
+        self._step(replace(self.draft, diverse=diverse))
 
     def keep(self, slot: int) -> None:
         """Keep the face as A (0) or B (1)."""

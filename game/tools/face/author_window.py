@@ -88,7 +88,7 @@ class AuthorWindow:
         elif event.key in _LOCKS:
             author.lock(_LOCKS[event.key])
         elif event.key == pygame.K_d:
-            author.adjust(diverse=not author.draft.diverse)
+            author.vary(not author.draft.diverse)
         elif event.key in (pygame.K_F1, pygame.K_F2):
             author.keep(event.key - pygame.K_F1)
         elif event.key in (pygame.K_F3, pygame.K_F4):
@@ -167,12 +167,14 @@ class AuthorWindow:
         self._go(14, 482)
         changed, diverse = imgui.checkbox("different from each other", draft.diverse)
         if changed:
-            author.adjust(diverse=diverse)
+            author.vary(diverse)
         self._go(14, 518)
         imgui.set_next_item_width(150 * self._k)
         changed, spread = imgui.slider_float("wanted spread", draft.spread, 0.0, 0.6, "%.2f")
         if changed:
-            author.adjust(spread=round(spread, 2))
+            author.slide(spread)
+        if imgui.is_item_deactivated():
+            author.drop()
         for i, (label, able, act) in enumerate(
             (("Undo", author.can_undo, author.undo), ("Redo", author.can_redo, author.redo))
         ):

@@ -104,6 +104,9 @@ def fit_json(found: FaceFit, model: FaceModel) -> dict[str, Any]:
             "faces": len(held.faces),
             "r_squared": dict(zip(AXES, held.r_squared.tolist(), strict=True)),
             "rmse": dict(zip(AXES, held.rmse.tolist(), strict=True)),
+            "deviation_rmse": None
+            if held.deviation_rmse is None
+            else dict(zip(AXES, held.deviation_rmse.tolist(), strict=True)),
             "log_density": held.log_density,
         },
         "lacking": list(found.lacking),
@@ -135,6 +138,8 @@ def _print_fit(found: FaceFit, model: FaceModel) -> None:
             f"held out ({len(h.faces)} faces): R² {h.r_squared[0]:.3f} and {h.r_squared[1]:.3f}, "
             f"error {h.rmse[0]:.3f} and {h.rmse[1]:.3f}, mean log-density {h.log_density:+.2f}"
         )
+        if h.deviation_rmse is not None:
+            print(f"  error of their predicted deviations {h.deviation_rmse[0]:.3f} and {h.deviation_rmse[1]:.3f}")
     for text in found.lacking:
         print(f"too few: {text}")
 

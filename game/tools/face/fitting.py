@@ -48,6 +48,7 @@ class WholeFaces:
     part_mean: Floats  # (F, 4, 2)
     part_covariance: Floats  # (F, 4, 2, 2)
     mean: Floats  # (F, 2) of the ratings
+    deviation: Floats  # (F, 2) of the ratings, NaN where there are too few
     ratings: tuple[int, ...]
 
     def __len__(self) -> int:
@@ -60,6 +61,7 @@ class WholeFaces:
             self.part_mean[numbers],
             self.part_covariance[numbers],
             self.mean[numbers],
+            self.deviation[numbers],
             tuple(self.ratings[i] for i in numbers),
         )
 
@@ -70,12 +72,14 @@ class WholeFaces:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """How the model does on whole faces that the weights have not seen: R² and error per axis, mean log-density."""
+    """How the model does on whole faces that the weights have not seen: R² and error per axis, error of the
+    predicted deviations (None where no face has enough ratings), mean log-density."""
 
     faces: WholeFaces
     predicted: Floats
     r_squared: Floats  # (2,)
     rmse: Floats  # (2,)
+    deviation_rmse: Floats | None  # (2,)
     log_density: float
 
 
@@ -210,8 +214,15 @@ def _whole_faces(
         np.array(means),
         np.array(covariances),
         np.array([_points(by_face[f]).mean(axis=0) for f in faces]),
+        np.array([_deviation(by_face[f]) for f in faces]),
         tuple(len(by_face[f]) for f in faces),
     )
+
+
+def _deviation(rows: Sequence[Rating]) -> Floats:
+    if len(rows) < RATINGS_NEEDED:
+        return np.full(2, np.nan)
+    return np.asarray(_points(rows).std(axis=0, ddof=1))
 
 
 def _regress(whole: WholeFaces, path: Path) -> tuple[AxisFit, AxisFit]:
@@ -237,11 +248,14 @@ def _hold_out(whole: WholeFaces, share: float, seed: int, path: Path) -> HeldOut
     _regress(seen, path)  # refuses a singular design, which least squares without negatives would not notice
     predicted, covariance = kept.predict(_weights(seen))
     residual = kept.mean - predicted
+    off = kept.deviation - np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+    known = np.isfinite(off).all(axis=1)
     spread = ((kept.mean - kept.mean.mean(axis=0)) ** 2).sum(axis=0)
     return HeldOut(
         kept,
         predicted,
         1.0 - (residual**2).sum(axis=0) / np.maximum(spread, 1e-12),
         np.sqrt((residual**2).mean(axis=0)),
+        np.sqrt((off[known] ** 2).mean(axis=0)) if known.any() else None,
         float(log_density(kept.mean, predicted, covariance).mean()),
     )
