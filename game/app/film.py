@@ -3,6 +3,7 @@
 examples:
   run_game.py film --emotion anger=0.9 --seconds 10 --every 0.5 --strip --out strip.png
   run_game.py film --emotion joy=0.8 --say "This one here? Oh, it is big!" --seconds 6 --every 0.0333 --out frames
+  run_game.py film --figure6 --seed 6 --out fig6.png     the paper's rows: gestures only, success, failure
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=8.0, help="length (default 8)")
     parser.add_argument("--every", type=float, default=0.5, help="seconds between pictures (default 0.5)")
     parser.add_argument("--strip", action="store_true", help="one PNG with all pictures side by side")
+    parser.add_argument("--figure6", action="store_true", help="one talk in three rows, as in the paper's figure 6")
+    parser.add_argument("--item", default="teapot_gold", help="what figure 6 is talked about (default teapot_gold)")
     parser.add_argument("--columns", type=int, default=4, help="pictures in a row of the strip (default 4)")
     parser.add_argument("--size", type=parse_size, default=None, metavar="WxH", help="of one picture")
     parser.add_argument("--out", type=Path, required=True, help="a PNG (strip) or a folder (sequence)")
@@ -46,8 +49,24 @@ def sheet(pictures: list[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
     return out
 
 
+def _figure6(args: argparse.Namespace) -> int:
+    from game.app.figure6 import SIZE_PX, draw_figure6
+
+    studio = Studio(args, args.size or SIZE_PX, "body")
+    try:
+        items = studio.session.assets.talk.script.items
+        if args.item not in items:
+            raise BadInput("--item", expected=" | ".join(items), seen=args.item)
+        write_png(args.out, draw_figure6(studio, args.seed, args.item))
+    finally:
+        studio.close()
+    return 0
+
+
 def run(args: argparse.Namespace) -> int:
     """Simulate and draw."""
+    if args.figure6:
+        return _figure6(args)
     if not 0.0 < args.seconds <= 3600.0:
         raise BadInput("--seconds", expected="above 0, at most 3600", seen=args.seconds)
     if not 1 / 120 <= args.every <= args.seconds:

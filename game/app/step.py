@@ -204,9 +204,12 @@ def face_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         return world
     pose, speech = world.body.pose, world.speech
     shown, named, visemes = world.shown, None, None
+    if world.mode == "gestures":
+        # Gestures are judged alone: a face that tells the feeling would tell it for them.
+        shown = with_neutral(np.zeros(6))
     if speech is not None and speech.line.speaker == "shopkeeper":
         visemes = None if speech.visemes is None else speech.visemes.at(world.time_s - speech.started_s)
-        if speech.line.face is not None:
+        if speech.line.face is not None and world.mode != "gestures":
             # What the script asks for belongs to the words: a drawn expression, or a nudge on what is shown.
             named = speech.line.face if speech.line.face in assets.face.expressions else None
             nudge = assets.talk.script.faces.get(speech.line.face, {})
@@ -214,7 +217,7 @@ def face_stage(assets: StepAssets, world: World, intent: Intent) -> World:
             shown = with_neutral(np.clip(shown[:6] + change, 0.0, 1.0))
     signal = FaceSignal(
         shown=shown,
-        felt=with_neutral(world.felt),
+        felt=shown if world.mode == "gestures" else with_neutral(world.felt),
         blink=0.0 if pose is None else float(pose.blink[0]),
         look=None if pose is None else pose.gaze[0],
         visemes=visemes,

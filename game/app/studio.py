@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from game.app.strings import load_strings
 from game.app.ui import PALETTE, Canvas, Rect
 from game.app.world import TICK_S, Intent, World
 from game.core.errors import BadInput, Where
-from game.render import CLOSEUP, Camera, Device, FontSet, Hud, Renderer, level_named
+from game.render import CLOSEUP, LEVELS, Camera, Device, FontSet, Hud, Renderer, level_named
 from game.render.assets import save_png
 from game.story import Spoken
 
@@ -50,7 +50,8 @@ def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mode", choices=["full", "gestures", "body", "face"], default="full", help="what is acted")
     parser.add_argument("--say", default="", metavar="TEXT", help="a line to speak: its words call up gestures")
     parser.add_argument("--language", choices=["en", "ja"], default="en")
-    parser.add_argument("--level", default="ultra", help="quality level (default ultra)")
+    levels = [level.name for level in LEVELS]
+    parser.add_argument("--level", choices=levels, default="ultra", help="quality level (default ultra)")
     parser.add_argument("--camera", choices=sorted(CAMERAS), default=None, help="where from")
     parser.add_argument("--overlay", action="store_true", help="feelings and active nodes, as in the paper's figure 6")
     parser.add_argument("--networks", action="store_true", help="the three networks with live factors")
@@ -78,6 +79,7 @@ class Studio:
         if args.networks:
             self.session.overlays |= {"networks"}
         self._label = ""
+        self.draw_over: Callable[[Studio, Canvas], None] | None = None
         self.camera = CAMERAS[args.camera or camera]
         self.device = Device.headless(*size)
         stage = load_stage()
@@ -102,9 +104,17 @@ class Studio:
 
     def _run(self, seconds: float) -> None:
         for _ in range(round(seconds / TICK_S)):
-            self.session.world = step(self.session.assets, self.session.world, Intent())
-            assert self.session.world.body.pose is not None
-            self.show.tick(self.session.world.body.pose, TICK_S)
+            self.tick(Intent())
+
+    def tick(self, intent: Intent) -> None:
+        """One step of the world, followed by what is seen."""
+        self.session.world = step(self.session.assets, self.session.world, intent)
+        assert self.session.world.body.pose is not None
+        self.show.tick(self.session.world.body.pose, TICK_S)
+
+    def begin(self, world: World) -> None:
+        """Another world from its first tick on; nothing of the old one is left in cloth and hair."""
+        self.session.world, self.show.puppet = world, None
 
     def picture(self, label: str = "") -> NDArray[np.uint8]:
         """(h, w, 3) of this moment."""
@@ -141,6 +151,8 @@ class Studio:
     def _draw_hud(self, hud: Hud) -> None:
         canvas = Canvas(hud, self.session.settings.language)
         draw_overlays(self.session, canvas)
+        if self.draw_over is not None:
+            self.draw_over(self, canvas)
         if self._label:
             size = canvas.width / 26
             width = canvas.measure(self._label, size, "bold") + size
