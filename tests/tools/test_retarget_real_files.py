@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from game.animation import Performer
 from game.app.cli import main
 from game.core import ASSETS, Clip
 from game.core.humanoid import REFERENCE
-from game.embos import UnitLibrary
+from game.embos import Planner, UnitLibrary
 from game.formats import read_bvh
+from game.tools.observer import play_scenes
 from game.tools.retarget import Options, Retargeted, detect_map, find_map, load_map, retarget
 
 FILES = {
@@ -119,3 +121,7 @@ def test_an_annotated_foreign_take_joins_the_analysis(
     for behaviour in ("shoulders_dropped", "look_down"):
         assert any(variant.take == "visitor" for variant in by_name[behaviour].variants)
     assert len(library.clips["visitor"].rotation) == report["frames"]
+    # And bodies made from this library still move like bodies.
+    planner = Planner(library)
+    scenes = play_scenes(planner, Performer(library, planner.tables.layers), "body", 3, 1, 4.0)
+    assert all(np.isfinite(scene.points).all() and np.abs(scene.points).max() < 2.0 for scene in scenes)

@@ -14,7 +14,7 @@ from game.tools.observer.features import describe
 from game.tools.observer.learner import Observer, windows
 from game.tools.observer.scenes import Scene
 
-__all__ = ["Score", "score_of", "score_scenes"]
+__all__ = ["Score", "accustomed", "scene_features", "score_of", "score_scenes", "wilson"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]
@@ -73,6 +73,13 @@ def score_scenes(observer: Observer, scenes: Sequence[Scene]) -> Score:
     """Every window of 8 s of every performance, side by side."""
     features, felt = scene_features(scenes)
     return score_of(felt, observer.judge(features).argmax(axis=1), len(scenes))
+
+
+def accustomed(features: Floats, training: Floats) -> Floats:
+    """Features (N, D) as a viewer sees them who has got used to whom they come from: shifted and stretched, all
+    together and without their labels, to the mean and spread of what was learnt."""
+    spread = np.maximum(features.std(axis=0), 1e-3)
+    return np.asarray((features - features.mean(axis=0)) / spread * training.std(axis=0) + training.mean(axis=0))
 
 
 def scene_features(scenes: Sequence[Scene]) -> tuple[Floats, Ints]:

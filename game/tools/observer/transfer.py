@@ -21,7 +21,7 @@ from game.formats import read_bvh
 from game.tools.observer.features import describe
 from game.tools.observer.keypoints import keypoints_of_clip
 from game.tools.observer.learner import Observer, windows
-from game.tools.observer.scoring import Score, score_of
+from game.tools.observer.scoring import Score, accustomed, score_of
 from game.tools.retarget import Options, retarget
 
 __all__ = ["SETS", "Foreign", "StyleSet", "read_set", "score_set"]
@@ -77,14 +77,12 @@ def read_set(folder: Path, styles: StyleSet, tell: Callable[[str], None] = lambd
 
 def score_set(observer: Observer, training: Floats, foreign: Foreign) -> dict[str, Score]:
     """``as_is``: the observer as it is, all seven names allowed. ``among``: only the names the set has.
-    ``accustomed``: also used to the actor, whose features (of all files, without their labels) are shifted and
-    stretched to the mean and spread of the takes'."""
+    ``accustomed``: also used to the actor, from all files of the set."""
     asked = foreign.emotion >= 0
     felt, own = foreign.emotion[asked], np.unique(foreign.emotion[asked])
     cases = int(asked.sum())
-    spread = np.maximum(foreign.features.std(axis=0), 1e-3)
-    moved = (foreign.features - foreign.features.mean(axis=0)) / spread * training.std(axis=0) + training.mean(axis=0)
-    plain, used = observer.judge(foreign.features[asked]), observer.judge(moved[asked])
+    plain = observer.judge(foreign.features[asked])
+    used = observer.judge(accustomed(foreign.features, training)[asked])
     return {
         "as_is": score_of(felt, plain.argmax(axis=1), cases),
         "among": score_of(felt, own[plain[:, own].argmax(axis=1)], cases, len(own)),
