@@ -150,6 +150,13 @@ def test_too_few_ratings_say_how_many_are_needed(model, tmp_path):
     assert not (tmp_path / "p.yaml").exists()
 
 
+def test_nothing_is_written_where_one_of_two_cannot_be(model, ratings, tmp_path):
+    csv = write(tmp_path / "r.csv", ratings)
+    with pytest.raises(BadInput, match="folder that exists"):
+        fit_command.fit(arguments(csv, out_parts=tmp_path / "p.yaml", out_weights=tmp_path / "no" / "w.yaml"))
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["r.csv"]
+
+
 def test_singular_ratings_name_the_row(model, tmp_path):
     path = write(tmp_path / "r.csv", [Rating(f"r{i}", Face(mouth="grit"), 0.1 * i, 0.2 * i) for i in range(4)])
     out = tmp_path / "p.yaml"

@@ -130,7 +130,7 @@ class Author:
     def go_to(self, emotion: int) -> None:
         """Ask for one of the seven by name; the point goes where it stands."""
         v, a = self.parts.places[emotion]
-        self._step(replace(self.draft, point=_on_pad(float(v), float(a)), emotion=emotion))
+        self._step(replace(self.draft, point=_on_pad(float(v), float(a)), spread=0.0, emotion=emotion))
 
     def choose(self, rank: int) -> None:
         """Take a proposal as the face, 0 the best."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from game.tools.face.plots import need_matplotlib, plot_errors, plot_fit
 from game.tools.face.ratings_file import COLUMNS, face_code, format_rating, format_row, read_ratings
 from game.tools.face.simulate import ErrorRow, errors_by_raters, simulate_ratings
 from game.tools.face.sitting import single_part_faces, whole_faces
-from game.tools.face.yaml_edit import check_parts, check_weights, with_gaussians, with_weights, write_checked
+from game.tools.face.yaml_edit import check_parts, check_text, check_weights, with_gaussians, with_weights
 
 __all__ = ["fit", "simulate"]
 
@@ -41,13 +40,17 @@ def fit(args: argparse.Namespace) -> int:
         parts = with_gaussians(args.face_folder / "parts.yaml", found)
     if args.out_weights is not None:
         weights = with_weights(args.face_folder / "weights.yaml", found)
-    written: list[Path] = []
-    for path, text, check in ((args.out_parts, parts, check_parts), (args.out_weights, weights, check_weights)):
-        if path is not None:
-            write_checked(path, text, check)
-            written.append(path)
-    if args.plots is not None:
-        written += plot_fit(args.plots, found, model)
+    planned = [
+        (path, text, check)
+        for path, text, check in ((args.out_parts, parts, check_parts), (args.out_weights, weights, check_weights))
+        if path is not None
+    ]
+    for path, text, check in planned:
+        check_text(path, text, check)
+    written = [] if args.plots is None else plot_fit(args.plots, found, model)
+    for path, text, _ in planned:
+        write_text(path, text)
+        written.append(path)
     if args.json:
         print(json.dumps(fit_json(found, model) | {"written": [str(p) for p in written]}, ensure_ascii=False, indent=2))
     else:

@@ -127,7 +127,8 @@ class RateScreen:
         self._lay()
         self._buttons.draw(canvas, self._paint)
         canvas.bar(Rect(716, 572, 500, 6), sitting.done / max(sitting.total, 1), PALETTE["teal"], PALETTE["paper_warm"])
-        note = sitting.message or "Click or arrows: place it.  1–7: name it, or not.  Enter: next.  Backspace: undo."
+        keys = "Click or arrows: place it.  1–7: name it, or not.  Enter: next.  Backspace: undo."
+        note = sitting.message or (keys if sitting.face is not None else "Close the window, or Backspace: undo.")
         size = 16.0
         while canvas.measure(note, size) > 550 and size > 10:
             size -= 1

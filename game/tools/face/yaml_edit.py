@@ -25,6 +25,7 @@ __all__ = [
     "add_expression",
     "add_to_dialogue",
     "check_name",
+    "check_text",
     "with_gaussians",
     "with_weights",
     "write_checked",
@@ -135,15 +136,22 @@ def with_weights(path: Path, fit: FaceFit) -> str:
     return lines.text()
 
 
-def write_checked(path: Path, text: str, check: Callable[[Path], object]) -> None:
-    """Write a text that ``check`` can read, or raise its BadInput and leave the file as it was."""
+def check_text(path: Path, text: str, check: Callable[[Path], object]) -> None:
+    """Raise the BadInput of ``check`` where it cannot read a text that is to be written to ``path``."""
+    if not path.resolve().parent.is_dir() or path.is_dir():
+        raise BadInput(where=Where(path), expected="a file name in a folder that exists", seen="none such")
     with tempfile.TemporaryDirectory() as folder:
         trial = Path(folder) / path.name
         write_text(trial, text)
         try:
             check(trial)
         except BadInput as error:
-            raise BadInput(str(error).replace(str(trial), "what would be written")) from None
+            raise BadInput(str(error).replace(str(trial), f"what would be in {path.name}")) from None
+
+
+def write_checked(path: Path, text: str, check: Callable[[Path], object]) -> None:
+    """Write a text that ``check`` can read, or raise its BadInput and leave the file as it was."""
+    check_text(path, text, check)
     write_text(path, text)
 
 
