@@ -16,7 +16,7 @@ from game.tools.face.fitting import FACES_NEEDED, fit_ratings
 from game.tools.face.ratings_file import COLUMNS, Rating, format_rating, format_row
 from game.tools.face.simulate import errors_by_raters, simulate_ratings
 from game.tools.face.sitting import single_part_faces, whole_faces
-from game.tools.face.yaml_edit import add_expression, add_to_dialogue
+from game.tools.face.yaml_edit import add_expression, add_to_dialogue, with_gaussians
 
 FOLDER = ASSETS / "face"
 
@@ -148,6 +148,22 @@ def test_too_few_ratings_say_how_many_are_needed(model, tmp_path):
         fit_command.fit(arguments(write(tmp_path / "r.csv", three), out_weights=out, out_parts=tmp_path / "p.yaml"))
     assert out.read_text() == "mine"
     assert not (tmp_path / "p.yaml").exists()
+
+
+def test_a_part_written_on_one_line_stays_on_one_line(model, ratings, tmp_path):
+    text = (FOLDER / "parts.yaml").read_text()
+    start, end = text.index("    gentle:\n"), text.index("    closed_happy:\n")
+    flow = "    gentle: {shape: {}, mean: [0.26, -0.06], deviation: [0.18, 0.2], affinity: {joy: 0.8}}  # ok\n"
+    path = tmp_path / "parts.yaml"
+    path.write_text(text[:start] + flow + text[end:])
+    fit = fit_ratings(ratings, model, tmp_path)
+    written = with_gaussians(path, fit)
+    row = next(line for line in written.splitlines() if line.startswith("    gentle:"))
+    assert row.endswith("affinity: {joy: 0.8}}  # ok")
+    assert "correlation: " in row
+    path.write_text(written)
+    region, part = load_parts(path).regions[0], next(p for p in fit.parts if p.part == "gentle")
+    assert region.covariance[1] == pytest.approx(part.covariance, abs=2e-4)
 
 
 def test_nothing_is_written_where_one_of_two_cannot_be(model, ratings, tmp_path):

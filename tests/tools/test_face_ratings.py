@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pygame
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from game.core import ASSETS, BadInput
 from game.face import Face, load_parts
@@ -164,6 +166,34 @@ def test_files_that_are_no_ratings(path, parts, tmp_path):
 def test_codes_go_there_and_back(parts):
     face = Face("fierce", "knitted", "grit", "vein")
     assert parse_face(face_code(face), parts) == face
+
+
+LINES = st.lists(
+    st.lists(
+        st.one_of(
+            st.sampled_from(["yuki", "standard+standard+standard+standard", "fierce", "0.5", "1e999", "-1", "", "joy"]),
+            st.text(max_size=12),
+        ),
+        max_size=8,
+    ),
+    max_size=5,
+)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(LINES, st.sampled_from([",", '",', "\n", ";"]), st.booleans())
+def test_any_text_is_ratings_or_one_clear_line(path, parts, lines, between, headed):
+    path.write_bytes(
+        ((HEAD if headed else "") + "\n".join(between.join(row) for row in lines)).encode("utf-8", "replace")
+    )
+    said, found = "ratings.csv", []
+    try:
+        found = read_ratings(path, parts)
+    except BadInput as error:
+        said = str(error)
+    assert "ratings.csv" in said
+    assert "\n" not in said
+    assert all(abs(r.valence) <= 1 and abs(r.arousal) <= 1 for r in found)
 
 
 # -- the window's input, without a window ---------------------------------------------------------------------------
