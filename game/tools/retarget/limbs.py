@@ -17,7 +17,9 @@ __all__ = ["bend_to", "clear_hands", "soft_reach"]
 
 Floats = NDArray[np.floating[Any]]
 _HANN_FRAMES = 13
-_PASSES = 3
+_PASSES = 5
+_HINGE_SHARE = 0.08
+"""Sine of the bend below which the rest hinge decides the plane of a limb."""
 _TOLERANCE_M = 0.006
 """How deep a hand may press into the (soft) body."""
 
@@ -34,23 +36,34 @@ def bend_to(
 ) -> tuple[Floats, Floats]:
     """Turns (F, 4) in the world for the upper and the lower bone that bring the end (F, 3) to the target.
 
-    The limb opens or closes about its present hinge (the given one, (F, 3), where it is straight), then swings.
+    The limb keeps the plane it bends in, which swings with the way from root to end; a limb that is nearly straight
+    has no plane of its own and takes the hinge's, (F, 3) unit, along upper × lower of a bent limb.
     """
     upper, lower = joint - root, end - joint
     a = float(np.linalg.norm(upper, axis=-1).mean())
     b = float(np.linalg.norm(lower, axis=-1).mean())
-    way = target - root
+    now, way = upper + lower, target - root
     reach = soft_reach(np.linalg.norm(way, axis=-1), a + b, soft, full)
     reach = np.maximum(reach, abs(a - b) + 1e-3)
-    normal = unit(np.cross(unit(upper), unit(lower)) + 1e-3 * hinge)
-    # Interior angle at the middle joint before and after (law of cosines).
-    cos_now = -(unit(upper) * unit(lower)).sum(-1)
-    cos_then = (a * a + b * b - reach * reach) / (2.0 * a * b)
-    opening = np.arccos(np.clip(cos_now, -1.0, 1.0)) - np.arccos(np.clip(cos_then, -1.0, 1.0))
-    bent = quat.exp(normal * opening[:, None])
-    reached = upper + quat.rotate(bent, lower)
-    swing = quat.between(reached, way)
-    return swing, quat.multiply(swing, bent)
+    normal = unit(np.cross(unit(upper), unit(lower)) + _HINGE_SHARE * hinge)
+    turned = quat.rotate(quat.between(now, way), normal)
+    along = unit(way)
+    out = unit(np.cross(along, turned))
+    # Law of cosines: how far along and how far out of the way the middle joint lies.
+    ahead = np.clip((a * a + reach * reach - b * b) / (2.0 * reach), -a, a)
+    aside = np.sqrt(np.maximum(a * a - ahead * ahead, 0.0))
+    new_upper = along * ahead[:, None] + out * aside[:, None]
+    new_lower = along * reach[:, None] - new_upper
+    return _carried(upper, normal, new_upper, turned), _carried(lower, normal, new_lower, turned)
+
+
+def _carried(bone: Floats, normal: Floats, new_bone: Floats, new_normal: Floats) -> Floats:
+    """(F, 4) the turn that takes a bone, and the normal beside it, to their new directions."""
+    swing = quat.between(bone, new_bone)
+    x = unit(new_bone)
+    before, after = quat.rotate(swing, normal), new_normal
+    before, after = before - x * (before * x).sum(-1, keepdims=True), after - x * (after * x).sum(-1, keepdims=True)
+    return quat.multiply(quat.between(before, after), swing)
 
 
 def clear_hands(position: Floats, rotation: Floats, wrists: dict[str, Floats], *, table: bool) -> dict[str, Floats]:
@@ -129,11 +142,7 @@ def _points(position: Floats, rotation: Floats, side: str, wrist: Floats) -> Flo
 
 
 def _smooth(push: Floats, window: Floats) -> Floats:
-    """Pushes begin before they are needed: each frame gets what its neighbours need, weighed by a Hann window."""
-    if len(push) < len(window):
-        return push
+    """Pushes begin before they are needed and end after: each frame gets its neighbours' share, by a Hann window."""
     half = len(window) // 2
     padded = np.pad(push, ((half, half), (0, 0)), mode="edge")
-    spread = np.stack([np.convolve(padded[:, k], window, mode="valid") for k in range(3)], axis=-1)
-    grown = np.linalg.norm(spread, axis=-1, keepdims=True) >= np.linalg.norm(push, axis=-1, keepdims=True)
-    return np.asarray(np.where(grown, spread, 0.5 * (spread + push)))
+    return np.stack([np.convolve(padded[:, k], window, mode="valid") for k in range(3)], axis=-1)
