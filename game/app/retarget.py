@@ -4,6 +4,7 @@ Examples:
   run_game.py retarget walk.bvh --out my_takes/walk.bvh
   run_game.py retarget walk.bvh --out walk.bvh --map mixamo     a map shipped in assets/motion/maps
   run_game.py retarget walk.bvh --out walk.bvh --map mine.yaml  joints: {leftUpperArm: L_Arm, spine: [S1, S2], …}
+  run_game.py retarget walk.bvh --cut 2.5:9 --out stand.bvh     only these seconds
   run_game.py retarget walk.bvh --json                          say what would be done, write nothing
 
 Joints are found by their names and place; lengths, axes, zero pose and heading may be anything. The result stands
@@ -15,9 +16,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
+from game.core.clip import Clip
 from game.core.errors import BadInput, Where
 from game.formats.bvh import read_bvh, write_bvh
 from game.tools.retarget import Options, find_map, load_map, retarget
@@ -30,10 +32,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", type=Path, metavar="FILE.bvh", help="a person's motion")
     parser.add_argument("--out", type=Path, metavar="TAKE.bvh", help="where to write it (nothing is written without)")
     parser.add_argument("--map", metavar="MAP", help="a joint map: a YAML file, or the name of a shipped one")
+    parser.add_argument("--cut", type=_seconds, metavar="FROM:TO", help="only these seconds of the file")
     parser.add_argument("--no-table", action="store_true", help="hands may go where our table stands")
     parser.add_argument("--no-collide", action="store_true", help="hands may enter the body (implies --no-table)")
     parser.add_argument("--directions-only", action="store_true", help="keep arm directions, whatever the hands reach")
     parser.add_argument("--json", action="store_true", help="machine-readable report")
+
+
+def _seconds(text: str) -> tuple[float, float]:
+    try:
+        start_s, end_s = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"expected FROM:TO in seconds such as 2.5:9 but saw {text!r}") from None
+    if not 0.0 <= start_s < end_s:
+        raise argparse.ArgumentTypeError(f"expected 0 <= FROM < TO but saw {text!r}")
+    return start_s, end_s
+
+
+def _part(clip: Clip, cut: tuple[float, float] | None, path: Path) -> Clip:
+    if cut is None:
+        return clip
+    first, last = (round(second / clip.frame_time_s) for second in cut)
+    if first >= len(clip) - 1:
+        raise BadInput("--cut", where=Where(path), expected=f"a start before {clip.length_s:.2f} s", seen=cut[0])
+    frames = slice(first, last + 1)
+    return replace(clip, rotation=clip.rotation[frames].copy(), translation=clip.translation[frames].copy())
 
 
 def run(args: argparse.Namespace) -> int:
@@ -50,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
         collide=not args.no_collide,
         hand_targets=not args.directions_only,
     )
-    made = retarget(file.clip, joints, options, path=str(args.file))
+    made = retarget(_part(file.clip, args.cut, args.file), joints, options, path=str(args.file))
     if args.out is not None:
         write_bvh(made.clip, args.out)
     report = made.report

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from game.app.cli import main
 from game.core import ASSETS, BadInput, Clip, Skeleton
 from game.core import quaternion as quat
 from game.core.humanoid import REFERENCE
-from game.formats import read_bvh
+from game.formats import read_bvh, write_bvh
 from game.tools.retarget import MAPS, Options, detect_map, find_map, load_map, map_from_names, retarget
 
 PLAIN = Options(table=False, collide=False)
@@ -279,3 +280,21 @@ def test_the_shipped_maps_can_be_read() -> None:
     assert len(paths) >= 5
     for path in paths:
         assert load_map(path).name == path.stem
+
+
+def test_the_command_writes_a_take_and_refuses_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source, out = tmp_path / "theirs.bvh", tmp_path / "ours.bvh"
+    write_bvh(_disguised(_take(3.0), along_bones=True), source)
+    assert main(["retarget", str(source), "--out", str(out), "--cut", "0.5:2"]) == 0
+    assert "written" in capsys.readouterr().out
+    made = read_bvh(out).clip
+    assert made.length_s == pytest.approx(1.5, abs=0.07)
+    assert set(made.skeleton.names) == set(REFERENCE.names)
+    for wrong in (
+        ["--map", "bandai"],
+        ["--cut", "9:12"],
+        ["--out", str(tmp_path / "ours.txt")],
+        ["--out", str(source)],
+    ):
+        assert main(["retarget", str(source), *wrong]) == 2
+        assert capsys.readouterr().err.count("\n") == 1

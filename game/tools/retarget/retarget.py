@@ -39,6 +39,8 @@ _HUMAN_FACE = np.array([0.0, 0.12, 0.10])
 """Middle of a person's head from the head joint as a share of the leg."""
 _FACE_NEAR, _FACE_FAR = 0.18, 0.34
 """Wrist to middle of the head, shares of the leg: nearer than the first the hand belongs to the face."""
+_TRAVEL_M = 0.35
+"""Further from our place than this the person has left the table."""
 _ANKLE_LOW = 0.05
 """Quantile of the ankles' height that stands for flat feet."""
 _AT = REFERENCE.index
@@ -94,6 +96,9 @@ def retarget(
     _legs(source, position, rotation)
     position, rotation = _pose(rotation, root)
     _arms(source, position, rotation, options)
+    far = float(np.linalg.norm(root[:, [0, 2]], axis=-1).max())
+    if far > _TRAVEL_M:
+        notes.append(f"the person walks {far:.2f} m away from our place behind the table: cut out a part that stays")
     local = quat.normalize(REFERENCE.to_local(rotation))
     translation = np.broadcast_to(REFERENCE.rest_translation, (len(local), len(REFERENCE), 3)).copy()
     translation[:, 0] = root
