@@ -53,7 +53,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stall", default="flea", help="stall name or a dialogue file (default flea)")
     parser.add_argument("--seed", type=int, default=1, help="one seed, one result (default 1)")
     parser.add_argument("--out", type=Path, help="write one JSON line per decision here")
-    parser.add_argument("--body", action="store_true", help="also run the body planner and log the units on stage")
+    parser.add_argument("--body", action="store_true", help="also run the body planner; log units and why they began")
+    parser.add_argument(
+        "--mode", choices=["full", "gestures", "body", "face"], default="full", help="which of the body's layers act"
+    )
     parser.add_argument("--json", action="store_true", help="print the summary as JSON")
 
 
@@ -125,28 +128,36 @@ def summarise(episodes: list[Episode]) -> dict[str, Any]:
 
 
 def _play_all(assets: TalkAssets, args: argparse.Namespace, log: TextIO | None) -> list[Episode]:
-    observer = None
-    if args.body:
-        from game.app.body import BodyObserver
-
-        observer = BodyObserver.load()
+    """Talks one after the other; bodies, where they are watched, many talks at a time."""
     episodes: list[Episode] = []
-    for episode in range(args.episodes):
-        rounds, last = 0, None
+    if args.body:
+        from game.app.body import BATCH, BodyObserver
+
+        observer, size = BodyObserver.load(args.mode, explain=log is not None), BATCH
+    else:
+        observer, size = None, 1
+    for first in range(0, args.episodes, size):
+        talks = [
+            list(play_episode(assets, POLICIES[args.policy], args.seed, episode))
+            for episode in range(first, min(first + size, args.episodes))
+        ]
+        watched = None
         if observer is not None:
-            observer.begin(args.seed, episode)
-        for before, after, choice_id, offer in play_episode(assets, POLICIES[args.policy], args.seed, episode):
-            rounds, last = rounds + 1, after
-            if log is not None:
-                row = _row(episode, before, after, choice_id, offer)
-                if observer is not None:
-                    row["units"] = observer.watch(assets, after)
+            watched = observer.watch(assets, [[move[1] for move in talk] for talk in talks], args.seed, first)
+        for at, talk in enumerate(talks):
+            if not talk:
+                raise BadInput(
+                    f"episode {first + at}", expected="at least one decision", seen="a talk that ends at once"
+                )
+            for move, (before, after, choice_id, offer) in enumerate(talk if log is not None else []):
+                row = _row(first + at, before, after, choice_id, offer)
+                if watched is not None:
+                    body = watched[at][move]
+                    row |= {"mode": args.mode, "units": list(body.units), "starts": body.starts}
+                assert log is not None
                 log.write(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n")
-            elif observer is not None:
-                observer.watch(assets, after)
-        if last is None:
-            raise BadInput(f"episode {episode}", expected="at least one decision", seen="a talk that ends at once")
-        episodes.append(Episode(str(last.beat.ended), last.bargain.outcome == "deal", last.surplus, rounds))
+            last = talk[-1][1]
+            episodes.append(Episode(str(last.beat.ended), last.bargain.outcome == "deal", last.surplus, len(talk)))
     return episodes
 
 

@@ -23,8 +23,8 @@ from game.embos import LAYERS, Candidate, Decisions, GestureCues, Planner, Plann
 from game.story import Spoken, TimedText
 
 __all__ = [
-    "Event", "Performance", "Script", "correlations", "explain_starts", "fixed_world", "line_entropy", "line_motions",
-    "perform", "played_span", "take_rates",
+    "Event", "Performance", "Script", "correlations", "explain_starts", "factors_of", "fixed_world", "line_entropy",
+    "line_motions", "perform", "played_span", "take_rates",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]

@@ -22,11 +22,13 @@ from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Mark, Speech, World
 from game.core.emotion_space import EMOTIONS, SIX, with_neutral
 from game.core.springs import damp
 from game.embos import GestureCues, Planner, PlannerSignal
-from game.emotion import shown_emotion
+from game.emotion import Temperament, shown_emotion
 from game.face import FaceAsset, FaceSignal, advance_face, start_face, viseme_track
 from game.story import Spoken, TimedText
 
-__all__ = ["STAGES", "StepAssets", "new_world", "step", "targets_of"]
+__all__ = [
+    "STAGES", "StepAssets", "feelings_after", "leaked_emotion", "new_world", "speech_stage", "step", "targets_of",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 
@@ -149,18 +151,27 @@ def _cues(assets: StepAssets, world: World, timed: TimedText) -> tuple[GestureCu
 
 def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:
     """What the body feels and the face shows follow their targets; both fast, neither at once."""
-    felt = np.asarray(damp(world.felt, world.felt_target, FELT_HALF_LIFE_S, TICK_S), dtype=np.float64)
-    shown = damp(world.shown[:6], world.shown_target[:6], SHOWN_HALF_LIFE_S, TICK_S)
+    felt, shown = feelings_after(world.felt, world.felt_target, world.shown[:6], world.shown_target[:6])
     return replace(world, felt=felt, shown=with_neutral(shown))
+
+
+def feelings_after(felt: Floats, felt_target: Floats, shown: Floats, shown_target: Floats) -> tuple[Floats, Floats]:
+    """Felt and shown one tick later, all (..., 6)."""
+    felt = np.asarray(damp(felt, felt_target, FELT_HALF_LIFE_S, TICK_S), dtype=np.float64)
+    return felt, np.asarray(damp(shown, shown_target, SHOWN_HALF_LIFE_S, TICK_S), dtype=np.float64)
 
 
 def body_emotion(assets: StepAssets, world: World) -> Floats:
     """(7,) what drives posture and mannerism: the felt emotion as far as it leaks, strongest in the burst."""
-    leak = assets.talk.person.leak
-    felt = world.felt * leak + world.shown[:6] * (1.0 - leak)
-    since = (world.time_s - world.burst_s) / BURST_S
-    gain = 1.0 + BURST_GAIN * float(np.exp(-since * since * 2.0))
-    return with_neutral(np.clip(felt * gain, 0.0, 1.0))
+    return leaked_emotion(assets.talk.person, world.felt, world.shown[:6], np.array(world.time_s - world.burst_s))
+
+
+def leaked_emotion(person: Temperament, felt: Floats, shown: Floats, since_burst_s: Floats) -> Floats:
+    """felt, shown: (..., 6); since_burst_s: (...) seconds since the reaction's peak -> (..., 7)."""
+    leaked = felt * person.leak + shown * (1.0 - person.leak)
+    since = np.minimum(np.abs(since_burst_s) / BURST_S, 20.0)  # beyond that nothing is left of it
+    gain = 1.0 + BURST_GAIN * np.exp(-since * since * 2.0)
+    return with_neutral(np.clip(leaked * gain[..., None], 0.0, 1.0))
 
 
 def planner_stage(assets: StepAssets, world: World, intent: Intent) -> World:

@@ -5,8 +5,6 @@ A gesture's stroke falls on its word, so its window opens earlier by the time th
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -15,14 +13,11 @@ from numpy.typing import NDArray
 
 from game.embos.library import UnitLibrary
 from game.embos.stress import StressRule, stressed_moments
+from game.embos.words import BY_SUBSTRING, WORD
 
 __all__ = ["GestureCues", "timed_tokens"]
 
 Floats = NDArray[np.float64]
-
-_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
-_BY_SUBSTRING = frozenset({"ja", "zh", "ko"})
-"""Languages written without spaces between words."""
 
 
 def timed_tokens(text: str, start_s: float, length_s: float, language: str = "en") -> list[tuple[str, float]]:
@@ -32,24 +27,9 @@ def timed_tokens(text: str, start_s: float, length_s: float, language: str = "en
     word of any length can be found at its own place.
     """
     letters = max(len(text), 1)
-    if language in _BY_SUBSTRING:
+    if language in BY_SUBSTRING:
         return [(text[i:], start_s + length_s * i / letters) for i in range(len(text))]
-    return [(m.group(), start_s + length_s * m.start() / letters) for m in _WORD.finditer(text)]
-
-
-def _normal(word: str) -> str:
-    return unicodedata.normalize("NFKC", word).casefold().replace("’", "'")
-
-
-def _forms(word: str) -> frozenset[str]:
-    """A word with its simple inflections: plural and possessive."""
-    base = _normal(word)
-    forms = {base, base + "s", base + "'s", base + "s'"}
-    if base.endswith(("s", "x", "z", "ch", "sh")):
-        forms.add(base + "es")
-    if base.endswith("y") and base[-2:-1] not in set("aeiou"):
-        forms.add(base[:-1] + "ies")
-    return frozenset(forms)
+    return [(m.group(), start_s + length_s * m.start() / letters) for m in WORD.finditer(text)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,12 +55,7 @@ class GestureCues:
         Where words are spaced, whole words match without regard to case, with plural and possessive; a unit's
         "word" may be several words. Elsewhere a token matches a word it starts with.
         """
-        timed = [(_normal(token), time_s) for token, time_s in tokens]
-        found: list[tuple[float, int]] = []
-        for column, unit in enumerate(library.gestures):
-            for word in (library.units[unit].words or {}).get(language, ()):
-                found += [(time_s, column) for time_s in _moments(word, timed, language)]
-        found = sorted(set(found))
+        found = library.word_index(language).find(list(tokens))
         return cls(
             np.array([column for _, column in found], dtype=np.intp),
             np.array([time_s for time_s, _ in found], dtype=np.float64),
@@ -150,18 +125,6 @@ class GestureCues:
 
 def _tokens(text: str, char_s: Sequence[float], language: str) -> list[tuple[str, float]]:
     """(token, moment): words where they are spaced, else the rest of the line at every character."""
-    if language in _BY_SUBSTRING:
+    if language in BY_SUBSTRING:
         return [(text[i:], at) for i, at in enumerate(char_s)]
-    return [(m.group(), char_s[m.start()]) for m in _WORD.finditer(text)]
-
-
-def _moments(word: str, timed: Sequence[tuple[str, float]], language: str) -> list[float]:
-    if language in _BY_SUBSTRING:
-        wanted = _normal(word)
-        return [time_s for token, time_s in timed if wanted and token.startswith(wanted)]
-    wanted_words = _WORD.findall(_normal(word))
-    if not wanted_words:
-        return []
-    forms = [_forms(part) for part in wanted_words]
-    last = len(timed) - len(forms) + 1
-    return [timed[i][1] for i in range(last) if all(timed[i + j][0] in form for j, form in enumerate(forms))]
+    return [(m.group(), char_s[m.start()]) for m in WORD.finditer(text)]

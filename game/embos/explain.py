@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from game.core.emotion_space import EMOTIONS
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from game.embos.planner import Planner
     from game.embos.planner_state import Factors, PlannerSignal, PlannerState
 
-__all__ = ["Candidate", "explain"]
+__all__ = ["Candidate", "explain", "explain_chosen"]
 
 
 @dataclass(frozen=True)
@@ -47,29 +48,62 @@ def explain(
     state = planner.prepared(state, signal)
     factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s))
     result: list[list[Candidate]] = []
-    for at, layer in enumerate(t.layers):
-        candidates: list[Candidate] = []
-        for place in range(t.width):
-            slot = at * t.width + place
-            unit = int(t.unit[slot])
-            if unit >= 0:
-                candidates.append(
-                    Candidate(
-                        layer=layer,
-                        unit=unit,
-                        name=planner.library.units[unit].name,
-                        continuity=float(factors.continuity[0, at, place]),
-                        linkage=_link(factors, at, place),
-                        time=float(factors.time[0, at, place]),
-                        state=float(factors.state[0, at, place]),
-                        score=float(factors.score[0, at, place]),
-                        chosen=slot == factors.chosen[0, at],
-                        reason=_reason(planner, state, factors, character, at, place, signal.time_s),
-                        source=_source(planner, state, character, slot),
-                    )
-                )
+    for at in range(len(t.layers)):
+        candidates = [
+            _candidate(planner, state, factors, 0, character, at, place, signal.time_s)
+            for place in range(t.width)
+            if t.unit[at * t.width + place] >= 0
+        ]
         result.append(sorted(candidates, key=lambda c: (not c.chosen, -c.score)))
     return result
+
+
+def explain_chosen(
+    planner: Planner, state: PlannerState, signal: PlannerSignal, characters: NDArray[np.intp], dt_s: float
+) -> list[list[Candidate]]:
+    """For each of the characters (R,), what its layers chose in the tick and why; explain() without the losers."""
+    t = planner.tables
+    state = planner.prepared(state, signal)
+    factors = planner.evaluate(state, characters, signal.words[characters], planner.moment(signal.time_s, dt_s))
+    return [
+        [
+            _candidate(
+                planner, state, factors, row, character, at, int(factors.chosen[row, at]) - at * t.width, signal.time_s
+            )
+            for at in range(len(t.layers))
+        ]
+        for row, character in enumerate(characters.tolist())
+    ]
+
+
+def _candidate(
+    planner: Planner,
+    state: PlannerState,
+    factors: Factors,
+    row: int,
+    character: int,
+    at: int,
+    place: int,
+    time_s: float,
+) -> Candidate:
+    """The unit at a place of a layer; row: the character's in the factors."""
+    t = planner.tables
+    slot = at * t.width + place
+    unit = int(t.unit[slot])
+    one = factors.of(row)
+    return Candidate(
+        layer=t.layers[at],
+        unit=unit,
+        name=planner.library.units[unit].name,
+        continuity=float(one.continuity[0, at, place]),
+        linkage=_link(one, at, place),
+        time=float(one.time[0, at, place]),
+        state=float(one.state[0, at, place]),
+        score=float(one.score[0, at, place]),
+        chosen=bool(slot == one.chosen[0, at]),
+        reason=_reason(planner, state, one, character, at, place, time_s),
+        source=_source(planner, state, character, slot),
+    )
 
 
 def _link(factors: Factors, at: int, place: int) -> float:

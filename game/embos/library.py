@@ -15,6 +15,7 @@ from game.embos.mixing import RADIUS, mix_weights
 from game.embos.transitions import pose_distances
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 from game.embos.units_file import read_units
+from game.embos.words import WordIndex
 
 __all__ = ["UnitLibrary"]
 
@@ -91,6 +92,18 @@ class UnitLibrary:
     def gestures(self) -> NDArray[np.intp]:
         """(G,) indices of the gesture units proper: the columns of a word factor."""
         return np.array([i for i, u in enumerate(self.units) if u.layer == "gesture" and not u.is_rest], dtype=np.intp)
+
+    @cached_property
+    def _word_indices(self) -> Mapping[str, WordIndex]:
+        words: dict[str, list[tuple[int, str]]] = {}
+        for column, unit in enumerate(self.gestures):
+            for language, own in (self.units[unit].words or {}).items():
+                words.setdefault(language, []).extend((column, word) for word in own)
+        return {language: WordIndex.of(language, own) for language, own in words.items()}
+
+    def word_index(self, language: str) -> WordIndex:
+        """The gesture words of a language; empty where the repertoire has none."""
+        return self._word_indices.get(language) or WordIndex.of(language, ())
 
     @cached_property
     def stroke_offset_s(self) -> Floats:

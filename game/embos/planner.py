@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from game.core.errors import BadInput
 from game.embos.config import PlannerConfig
 from game.embos.draws import character_keys, factor, uniform
-from game.embos.explain import Candidate, explain
+from game.embos.explain import Candidate, explain, explain_chosen
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.planner_state import TICK_S, Decisions, Factors, PlannerSignal, PlannerState
@@ -114,6 +114,12 @@ class Planner:
     ) -> list[list[Candidate]]:
         """Why: per layer all candidates with their factors and a reason, the chosen one first (see explain.py)."""
         return explain(self, state, signal, character, dt_s)
+
+    def explain_chosen(
+        self, state: PlannerState, signal: PlannerSignal, characters: Ints, dt_s: float = TICK_S
+    ) -> list[list[Candidate]]:
+        """Why, for several characters (R,) at once: the chosen candidate of each layer only."""
+        return explain_chosen(self, state, signal, characters, dt_s)
 
     def prepared(self, state: PlannerState, signal: PlannerSignal) -> PlannerState:
         """The state as eq. 1 finds it in this tick: the emotion noted, whoever begins settled."""

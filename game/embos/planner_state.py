@@ -109,3 +109,12 @@ class Factors:
     within: Bools
     again: Bools
     next_s: Floats
+
+    def of(self, row: int) -> Factors:
+        """The factors of one of the R characters."""
+        if len(self.chosen) == 1:
+            return self
+        one = slice(row, row + 1)
+        linkage = [None if link is None else link[one] for link in self.linkage]
+        arrays = {name: value[one] for name, value in vars(self).items() if name != "linkage"}
+        return Factors(linkage=linkage, **arrays)

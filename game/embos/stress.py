@@ -12,11 +12,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from game.core.errors import BadInput
+from game.embos.words import WORD
 
 __all__ = ["StressRule", "stressed_moments"]
 
 _PHRASE = re.compile(r"[^,.;:!?…—–、。！？]+")
-_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+
 _STEM = re.compile(r"[一-鿿々]+|[ァ-ヴー]{2,}")
 
 
@@ -71,5 +72,5 @@ def stressed_moments(
 def _content_words(phrase: str, language: str, rule: StressRule) -> list[int]:
     """Where the content words of a phrase begin."""
     unstressed = rule.unstressed.get(language, frozenset())
-    pattern = _STEM if language == "ja" else _WORD
+    pattern = _STEM if language == "ja" else WORD
     return [m.start() for m in pattern.finditer(phrase) if m.group().casefold().replace("’", "'") not in unstressed]
