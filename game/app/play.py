@@ -19,6 +19,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pygame
 
 from game.app.afternoon import Afternoon
@@ -233,6 +234,7 @@ def run(args: argparse.Namespace) -> int:
     window = Window(session, device)
     try:
         window.draw()
+        _set_icon(window)
         pygame.display.flip()
         _choose_level(window, session.settings)
         _loop(window)
@@ -258,6 +260,16 @@ def need_display() -> None:
     driver = pygame.display.get_driver()
     if driver in {"offscreen", "dummy"} and asked != driver:
         raise nowhere
+
+
+def _set_icon(window: Window) -> None:
+    """The shopkeeper's head of the first picture is the window's icon."""
+    pixels = window.renderer.read_pixels()
+    side = pixels.shape[0] // 2
+    top, left = pixels.shape[0] // 14, (pixels.shape[1] - side) // 2
+    head = np.ascontiguousarray(pixels[top : top + side, left : left + side])
+    picture = pygame.image.frombuffer(head.tobytes(), (side, side), "RGB")
+    pygame.display.set_icon(pygame.transform.smoothscale(picture, (64, 64)))
 
 
 def _loop(window: Window) -> None:
