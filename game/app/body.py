@@ -27,12 +27,13 @@ __all__ = ["BATCH", "BodyObserver", "Watched"]
 
 Floats = NDArray[np.float64]
 
-BATCH = 128
+BATCH = 512
 """Talks whose bodies run side by side."""
 THINKING_TICKS = 61
 """How long the simulated player looks before deciding: 2 s and the tick in which the last word ended."""
 PATIENCE_S = 0.4
 """After a line's end the next one is asked for."""
+NEVER = 2**62
 MAX_TICKS = 3000
 """A beat that is longer than this is broken off."""
 SEEN: dict[Mode, tuple[str, ...]] = {
@@ -58,7 +59,6 @@ class _Actor:
     beats: list[TalkState]
     watched: list[Watched]
     began: int = 0
-    quiet_from: int = -1
 
 
 @dataclass(frozen=True)
@@ -113,6 +113,8 @@ class _Bodies:
             self.felt[row], self.shown[row] = actor.world.felt, actor.world.shown[:6]
         self.burst_s = np.full(n, -1e9)
         self.due_s = np.full(n, np.inf)  # when the present line has been heard out; −inf: one waits to begin
+        self.over_tick = np.full(n, NEVER)  # when the player has looked long enough
+        self.fresh: list[int] = []  # rows whose beat begins in this tick
         self.cue_row, self.cue_column = np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
         self.cue_s = np.zeros(0)
         self.lead_most_s = float(library.stroke_offset_s[library.gestures].max(initial=0.0))
@@ -124,8 +126,8 @@ class _Bodies:
         live = [row for row, actor in enumerate(self.actors) if actor.beats]
         for row in live:
             self._next_beat(row, 0)
-        tick = 0
-        while live:
+        tick, left = 0, len(live)
+        while left:
             time_s = tick * TICK_S
             for row in np.flatnonzero(self.due_s < time_s).tolist():
                 self._speak(row, tick)
@@ -137,10 +139,11 @@ class _Bodies:
             self.state, decisions = self.planner.advance(before, signal, TICK_S)
             self._note(before, signal, decisions, tick)
             tick += 1
-            for row in [row for row in live if self._over(row, tick)]:
+            self.fresh.clear()
+            for row in np.flatnonzero(self.over_tick <= tick).tolist():
                 if not self._next_beat(row, tick):
-                    live.remove(row)
-                    self.due_s[row] = np.inf
+                    left -= 1
+                    self.over_tick[row], self.due_s[row] = NEVER, np.inf
         return [actor.watched for actor in self.actors]
 
     def _next_beat(self, row: int, tick: int) -> bool:
@@ -155,7 +158,9 @@ class _Bodies:
         else:
             actor.world = replace(actor.world, talk=talk, queue=talk.beat.lines)
         actor.watched.append(Watched())
-        actor.began, actor.quiet_from = tick, -1
+        actor.began = tick
+        self.over_tick[row] = tick + MAX_TICKS
+        self.fresh.append(row)
         self._read_back(row, tick)
         return True
 
@@ -186,14 +191,8 @@ class _Bodies:
             self.due_s[row] = -np.inf
         else:
             self.due_s[row] = np.inf
-            actor.quiet_from = tick
+            self.over_tick[row] = min(tick + THINKING_TICKS, actor.began + MAX_TICKS)
         self.cue_row, self.cue_column, self.cue_s = rows, columns, times_s
-
-    def _over(self, row: int, tick: int) -> bool:
-        """Whether the player has looked long enough; tick: the one to come."""
-        actor = self.actors[row]
-        quiet = actor.quiet_from >= 0 and tick - actor.quiet_from >= THINKING_TICKS
-        return quiet or tick - actor.began >= MAX_TICKS
 
     def _words(self, emotion: Floats, time_s: float) -> Floats:
         """(N, G) word factors, as GestureCues.factors gives them row by row."""
@@ -218,10 +217,9 @@ class _Bodies:
         reasons = dict[int, list[Any]]()
         if self.observer.explain and rows.size:
             reasons = dict(zip(rows.tolist(), self.planner.explain_chosen(before, signal, rows), strict=True))
-        fresh = [row for row, actor in enumerate(self.actors) if actor.began == tick and actor.watched]
-        for row in {*rows.tolist(), *fresh}:
+        for row in {*rows.tolist(), *self.fresh}:
             actor = self.actors[row]
-            if len(actor.watched) == len(actor.beats) and self._over(row, tick):
+            if self.over_tick[row] == NEVER:
                 continue  # the talk is over, its body merely goes on
             watched = actor.watched[-1]
             for at in range(len(self.layers)):
