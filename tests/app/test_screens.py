@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -69,6 +70,8 @@ def test_a_whole_afternoon(window) -> None:
     go(window, key("f3"), seconds=0.0)
     assert np.abs(picture(window) - plain)[:250, :400].mean() > 20
     go(window, key("f1"), key("f2"), key("f3"), seconds=0.0)
+    window.session.settings = replace(window.session.settings, captions=True)
+    assert np.abs(picture(window) - plain)[262:283, 100:300].mean() > 10, "the body in words"
 
     go(window, key("o"), Action("right"), Action("right", fast=True), Action("left"), Action("wheel", amount=1))
     go(window, key("1"))

@@ -105,6 +105,8 @@ class TalkScreen:
         else:
             self._buttons.lay([])
         self._draw_subtitles(session, canvas)
+        if session.settings.captions:
+            self._draw_caption(session, canvas)
         draw_overlays(session, canvas)
 
     def _draw_price(self, session: Session, canvas: Canvas) -> None:
@@ -185,6 +187,18 @@ class TalkScreen:
 
     def _shown(self, session: Session, choice: StoryChoice) -> str:
         return choice.text(session.strings.language).replace("{offer}", session.money(self._amount))
+
+    def _draw_caption(self, session: Session, canvas: Canvas) -> None:
+        """What the body does, in words: for players who cannot see it, or want to learn to."""
+        library = session.assets.planner.library
+        units = [library.units[i] for i in session.world.body.decisions.unit[0] if i >= 0]
+        words = " · ".join(unit.title(session.strings.language) for unit in units if not unit.is_rest)
+        if not words:
+            return
+        width = canvas.measure(words, 16) + 32
+        left = 20 + (canvas.width - CARD_WIDTH - 60 - width) / 2
+        canvas.panel(Rect(left, canvas.height - 192, width, 30), fade(PALETTE["shade"], 1.2), radius=15)
+        canvas.text(left + 16, canvas.height - 187, words, 16, PALETTE["white"])
 
     def _draw_subtitles(self, session: Session, canvas: Canvas) -> None:
         world, s = session.world, session.strings
