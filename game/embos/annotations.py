@@ -121,7 +121,8 @@ def _clip(path: Path, root: Node) -> TakeClip:
     foreign = [joint for joint in skeleton.names if joint not in REFERENCE.index]
     if missing or foreign:
         raise BadInput(
-            "skeleton", where=Where(path), expected=f"the {len(REFERENCE)} joints of the reference humanoid",
+            "skeleton", where=_place(path, foreign[0] if foreign else skeleton.names[0]),
+            expected=f"the {len(REFERENCE)} joints of the reference humanoid",
             seen=f"missing {', '.join(missing[:4]) or 'none'}; foreign {', '.join(foreign[:4]) or 'none'}",
             hint="retarget it first",
         )  # fmt: skip
@@ -142,21 +143,33 @@ def _parents(clip: Clip, order: NDArray[np.intp]) -> list[str]:
 
 
 def _same_rest(path: Path, offsets: NDArray[np.floating], parents: Sequence[str]) -> None:
-    for i, joint in enumerate(REFERENCE.names):
-        parent = REFERENCE.parents[i]
-        wanted = REFERENCE.names[parent] if parent >= 0 else ""
-        if parents[i] != wanted:
-            raise BadInput(f"joint {joint}", where=Where(path), expected=f"parent {wanted!r}", seen=parents[i])
-        # The root's rest place may differ: its channels replace it.
-        far = float(np.abs(offsets[i] - REFERENCE.rest_translation[i]).max()) if parent >= 0 else 0.0
-        if far > _OFFSET_TOLERANCE_M:
-            raise BadInput(
-                f"joint {joint}",
-                where=Where(path),
-                expected="the reference humanoid's offset in metres",
-                seen=np.round(offsets[i], 4).tolist(),
-                hint="retarget it first",
-            )
+    """Raises BadInput at the first joint that hangs elsewhere than in the reference, with how many more there are."""
+    wanted = [REFERENCE.names[p] if p >= 0 else "" for p in REFERENCE.parents]
+    hung = [i for i in range(len(REFERENCE)) if parents[i] != wanted[i]]
+    # The root's rest place may differ: its channels replace it.
+    gap = np.abs(offsets - REFERENCE.rest_translation).max(axis=1)
+    far = [i for i in range(len(REFERENCE)) if REFERENCE.parents[i] >= 0 and gap[i] > _OFFSET_TOLERANCE_M]
+    if not hung and not far:
+        return
+    first = min(hung + far)
+    joint, others = REFERENCE.names[first], len({*hung, *far}) - 1
+    more = f" (and {others} more joints)" if others else ""
+    if first in hung:
+        raise BadInput(f"joint {joint}{more}", where=_place(path, joint), expected=f"parent {wanted[first]!r}",
+                       seen=parents[first], hint="retarget it first")  # fmt: skip
+    offset_m = np.round(REFERENCE.rest_translation[first], 4).tolist()
+    raise BadInput(
+        f"joint {joint}{more}", where=_place(path, joint), seen=np.round(offsets[first], 4).tolist(),
+        expected=f"the reference humanoid's offset in metres, {offset_m}",
+        hint="retarget it first",
+    )  # fmt: skip
+
+
+def _place(path: Path, joint: str) -> Where:
+    """The line of a BVH file on which a joint begins."""
+    lines = path.read_text("utf-8", errors="replace").splitlines()
+    found = (number for number, line in enumerate(lines, 1) if line.split()[:2] in (["JOINT", joint], ["ROOT", joint]))
+    return Where(path, line=next(found, 1))
 
 
 def _spans(root: Node, repertoire: Mapping[str, Behaviour], clip: TakeClip | None, findings: Findings) -> list[Span]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -144,10 +145,71 @@ def test_another_skeleton_and_a_file_elsewhere_are_refused(folder: Path, capsys:
     (folder / "neutral.yaml").write_text(annotation("neutral").replace("fps: 30", "fps: 60"), "utf-8")
     assert run(folder) == 2
     said = capsys.readouterr().err
+    assert "joy.bvh:2: skeleton: expected the 41 joints of the reference humanoid" in said
     assert "missing hips; foreign pelvis" in said
-    assert "the reference humanoid's offset" in said
+    assert re.search(
+        r"fear\.bvh:\d+: joint \w+ \(and \d\d more joints\): expected the reference humanoid's offset", said
+    )
     assert "anger.yaml:3:6: bvh: expected a file name in this folder" in said
     assert "neutral.yaml:5:6: fps: expected 30.000" in said
+
+
+def test_empty_takes_and_nonsense_values_are_named_with_their_lines(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "joy.yaml").write_text("", "utf-8")
+    (folder / "fear.bvh").write_text("", "utf-8")
+    (folder / "disgust.bvh").unlink()
+    text = (folder / "neutral.bvh").read_text()
+    motion = text[: text.index("Frames:")] + "Frames: 0\nFrame Time: 0.0333333\n"
+    (folder / "neutral.bvh").write_text(motion)
+    for emotion in ("anger", "sadness"):  # two files with broken numbers: both are found
+        lines = (folder / f"{emotion}.bvh").read_text().splitlines()
+        lines[-2] = lines[-2].replace(lines[-2].split()[0], "inf", 1)
+        (folder / f"{emotion}.bvh").write_text("\n".join(lines))
+    (folder / "surprise.yaml").write_text(annotation("surprise").replace("emotion: surprise\n", ""), "utf-8")
+    assert run(folder) == 2
+    assert sorted(p.name for p in folder.parent.iterdir()) == ["behaviours.yaml", "takes"]
+    said = capsys.readouterr().err
+    last = len((folder / "anger.bvh").read_text().splitlines()) - 1
+    for wanted in (
+        "joy.yaml:1:1: expected a mapping",
+        "fear.bvh:1:1: expected",
+        "disgust.bvh: cannot read this BVH file",
+        "neutral.bvh:",
+        f"anger.bvh:{last}:1: expected a finite number",
+        f"sadness.bvh:{last}:1: expected a finite number",
+        "surprise.yaml:1:1: expected the key 'emotion'",
+        "takes: expected a take of joy",
+        "takes: expected a take of surprise",
+        "findings; nothing was written",
+    ):
+        assert wanted in said, wanted
+    assert said.count("\n") >= 9
+
+
+def test_broken_spans_are_all_named(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    spans = (
+        "  - {layer: posture, behaviour: upright, start_s: .nan, end_s: 2.0}\n"
+        "  - {layer: gesture, behaviour: point_at, start_s: 1.0, end_s: 2.0, stroke_s: 3.0}\n"
+        "  - {layer: posture, start_s: 1.0, end_s: 2.0}\n"
+        "  - nonsense\n"
+        "  - {layer: mannerism, behaviour: touch_nose, start_s: 2.0, end_s: 3.0}\n"
+        "  - {layer: mannerism, behaviour: touch_nose, start_s: 2.5, end_s: 3.5}\n"
+    )
+    (folder / "surprise.yaml").write_text(annotation("surprise", spans), "utf-8")
+    assert run(folder) == 1
+    said = capsys.readouterr().err
+    for wanted in (
+        "surprise.yaml:7:51: expected a finite number",
+        "surprise.yaml:8:79: stroke: expected a moment from 1 to 2 s",
+        "surprise.yaml:9:5: expected the key 'behaviour'",
+        "surprise.yaml:10:5: expected a mapping",
+        "surprise.yaml:12:5: overlapping mannerism spans: expected a start at or after 3 s",
+        "surprise.yaml:7:3: take: expected at least one posture span",
+        "6 findings; nothing was written",
+    ):
+        assert wanted in said, wanted
 
 
 def test_an_empty_folder_says_what_belongs_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
