@@ -239,3 +239,29 @@ def test_bad_numbers_are_refused_with_their_place(tmp_path):
     slip.write_text(text.replace('"#E9543F"', '"#E9543"'), encoding="utf-8")
     with pytest.raises(BadInput, match="#rrggbb"):
         load_character(slip)
+
+
+def test_the_sleeve_follows_the_arm_and_the_coats_side_stays_with_the_trunk(character):
+    arm, binder = character.anatomy.arm, character.binder
+    joint = binder.rig.index
+
+    def around(distance: float, radius: float) -> np.ndarray:
+        angle = np.linspace(0, 2 * np.pi, 8, endpoint=False)
+        return np.array([arm.at(distance, radius * np.sin(a), radius * np.cos(a)) for a in angle])
+
+    assert (binder.coat(around(0.115, 0.062))[:, joint["leftUpperArm"]] > 0.85).all()
+    side = np.array([(0.135, y, 0.0) for y in (0.66, 0.70, 0.74)])
+    for name, points in (("left", side), ("right", side * (-1, 1, 1))):
+        weights = binder.coat(points)
+        np.testing.assert_allclose(weights.sum(1), 1.0)
+        assert (weights[:, joint[f"{name}UpperArm"]] < 0.1).all()
+    over_joint = binder.coat(arm.shoulder[None] + (0.0, 0.06, 0.0))[0]
+    assert over_joint[joint["leftShoulder"]] > 0.1
+    assert over_joint[joint["leftUpperArm"]] > 0.1
+
+
+def test_the_shirts_sleeve_is_bound_as_the_coat_over_it(character):
+    arm, binder = character.anatomy.arm, character.binder
+    points = np.array([arm.at(d, 0.045) for d in (0.05, 0.08, 0.11)])
+    trunk = [binder.rig.index[n] for n in ("chest", "spine", "leftShoulder")]
+    np.testing.assert_allclose(binder.left_sleeve(points)[:, trunk], binder.coat(points)[:, trunk])

@@ -106,7 +106,7 @@ def _hand(body: BodySpec, spec: HandSpec, arm: Arm) -> Field:
             cone(arm.in_hand(*root), arm.in_hand(*bend), radius * 1.02, radius),
             cone(arm.in_hand(*bend), arm.in_hand(*end), radius, radius * 0.86),
         )
-        fingers = finger if fingers is None else union(0.0035, fingers, finger)
+        fingers = finger if fingers is None else union(0.0025, fingers, finger)
     assert fingers is not None
     base, middle, tip = (arm.in_hand(*p) for p in arm.thumb())
     thumb = union(

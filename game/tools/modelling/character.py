@@ -30,12 +30,12 @@ class Character:
         self.rig = Rig.with_chains(chains)
         self.binder = Binder(self.rig, self.anatomy)
         self._head = Sculpt(self.anatomy.head, (-0.21, 0.90, -0.20), (0.21, 1.42, 0.20), 0.0045)
-        self._hand = Sculpt(self.anatomy.hand, (0.24, 0.36, -0.075), (0.60, 0.82, 0.115), 0.0025)
+        self._hand = Sculpt(self.anatomy.hand, (0.24, 0.36, -0.075), (0.60, 0.82, 0.115), 0.0025, 2e-3)
 
     def hand_parts(self, detail: Detail) -> list[Part]:
         """Forearm and hand of both sides."""
         mesh = self._hand.mesh(detail.triangles(5600))
-        left = Part("left_hand", "skin", mesh, self.binder.left_hand(mesh.position), 0.75)
+        left = Part("left_hand", "skin", mesh, self.binder.left_hand(mesh.position), 0.9)
         return [left, left.mirrored(self.rig.mirrored_columns())]
 
     def head_parts(self, detail: Detail) -> list[Part]:

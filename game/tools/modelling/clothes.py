@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from game.tools.modelling.fields import (
     ring,
     smooth_max,
     smooth_min,
+    smoothstep,
     union,
     unit,
 )
@@ -53,7 +55,7 @@ class Clothes:
         self._pocket = Sculpt(self._pocket_field, (-0.07, 0.70, 0.04), (0.07, 0.82, 0.16), 0.003)
         self._badge_at, self._badge_out = self._on_front(np.array([0.0]), np.array([0.752]), 0.0215)
         self._badge = Sculpt(self._badge_field, self._badge_at[0] - 0.03, self._badge_at[0] + 0.03, 0.0014)
-        self._coat = Sculpt(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.23), (0.36, 1.02, 0.23), 0.0042, 9e-3)
+        self._coat = Sculpt(self._coat_field, (-0.36, s.coat_hem - 0.02, -0.23), (0.36, 1.02, 0.23), 0.0042, 7e-3)
         self._scarf = Sculpt(self._scarf_field, (-0.12, 0.84, -0.12), (0.12, 1.04, 0.15), 0.0035)
         self._sleeve = Sculpt(self._sleeve_field, (0.05, 0.50, -0.10), (0.46, 1.02, 0.10), 0.0045, 5e-3)
         self._cuff = Sculpt(self._cuff_field, (0.18, 0.55, -0.10), (0.46, 0.85, 0.10), 0.004)
@@ -105,12 +107,12 @@ class Clothes:
         arm = self.anatomy.arm
         t = arm.distance_along(p)
         folds = 0.0024 * np.sin(3 * arm.angle_around(p) + 0.8) * np.clip((t - 0.05) * 14, 0, 1)
-        d = smooth_max(self._sleeve_cone(0.0)(p) + folds, t - self.spec.sleeve_end, 0.010)
-        return smooth_max(d, -self._sleeve_hollow(p), 0.007)
+        d = smooth_max(self._sleeve_cone(0.0)(p) + folds, t - self.spec.sleeve_end, 0.006)
+        return smooth_max(d, -self._sleeve_hollow(p), 0.006)
 
     def _sleeve_hollow(self, p: Floats) -> Floats:
         t = self.anatomy.arm.distance_along(p)
-        return smooth_max(self._sleeve_cone(0.011)(p), self.spec.sleeve_radius[2] - t, 0.01)
+        return smooth_max(self._sleeve_cone(0.0098)(p), self.spec.sleeve_radius[2] - t, 0.01)
 
     def _coat_body(self, p: Floats) -> Floats:
         y = p[:, 1]
@@ -123,7 +125,7 @@ class Clothes:
     def _coat_closed(self, p: Floats) -> Floats:
         q = p.copy()
         q[:, 0] = np.abs(q[:, 0])
-        return smooth_min(self._coat_body(p), self._coat_sleeve(q), self.spec.sleeve_radius[2] * 0.5)
+        return smooth_min(self._coat_body(p), self._coat_sleeve(q), 0.024)
 
     def _coat_field(self, p: Floats) -> Floats:
         q = p.copy()
@@ -155,12 +157,14 @@ class Clothes:
         upper = arm.upper_m
         d = union(
             0.02,
-            cone(arm.at(-0.02), arm.at(upper), 0.050, 0.0425),
+            cone(arm.at(0.03), arm.at(upper), 0.0455, 0.0425),
             cone(arm.at(upper), arm.at(upper + self.spec.cuff_to), 0.0425, 0.043),
         )(p)
         t = arm.distance_along(p)
         folds = 0.0024 * np.sin((t - upper) * 150 + 1.1 * np.sin(np.pi / 2 - arm.angle_around(p) + 0.6))
         d = d + folds * np.exp(-(((t - upper + 0.020) / 0.045) ** 2))
+        # It begins inside the coat's sleeve: at the shoulder it would show through the folds of crossed arms.
+        d = smooth_max(d, self.spec.sleeve_radius[2] - 0.012 - t, 0.01)
         return smooth_max(d, t - upper - (self.spec.cuff_from + self.spec.cuff_to) / 2, 0.006)
 
     def _cuff_field(self, p: Floats) -> Floats:
@@ -246,7 +250,7 @@ class Clothes:
         hem_at = self.spec.sleeve_end - self.spec.sleeve_stripe
         parts = []
         hem, rest = split_at_level(coat, down_sleeve(coat) - hem_at)
-        parts.append(_part("coat_sleeve_hem", "cream", hem, binder.coat, 1.0))
+        parts.append(_part("coat_sleeve_hem", "cream", self._hem_lit_as_cloth(hem), binder.coat, 1.0))
         if detail.trims:
             between, rest = split_at_level(rest, down_sleeve(rest) - (hem_at - 0.006))
             stripe, rest = split_at_level(rest, down_sleeve(rest) - (hem_at - 0.010))
@@ -261,6 +265,16 @@ class Clothes:
             parts += self._crest(binder, detail)
         parts.append(_part("coat", "indigo", rest, binder.coat, 1.1))
         return parts
+
+    def _hem_lit_as_cloth(self, hem: Mesh) -> Mesh:
+        """The outside of the sleeve's hem with normals off the arm: the rolled edge's own would shade it in teeth."""
+        arm = self.anatomy.arm
+        p = hem.position * np.where(hem.position[:, :1] < 0, (-1.0, 1.0, 1.0), 1.0)
+        out = p - arm.shoulder
+        out = unit(out - (out @ arm.along)[:, None] * arm.along)
+        out *= np.where(hem.position[:, :1] < 0, (-1.0, 1.0, 1.0), 1.0)
+        outside = smoothstep(-0.002, 0.001, self._sleeve_cone(0.005)(p))[:, None]
+        return replace(hem, normal=unit(hem.normal * (1 - 0.85 * outside) + out * (0.85 * outside)))
 
     def _crest(self, binder: Binder, detail: Detail) -> list[Part]:
         """A ring and a four-petalled flower on the back, laid a millimetre and a half over the cloth."""

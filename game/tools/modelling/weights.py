@@ -12,13 +12,15 @@ import numpy as np
 
 from game.core.humanoid import FINGERS
 from game.tools.modelling.anatomy import Anatomy, joint_at
-from game.tools.modelling.fields import Field, Floats, capsule, smoothstep, sphere, union
+from game.tools.modelling.fields import Field, Floats, capsule, cone, smoothstep, sphere, union
 from game.tools.modelling.rig import Chain, Rig
 
 __all__ = ["Binder"]
 
 _BODY_SIGMA_M = 0.017
 _ARM_SIGMA_M = 0.013
+_SHOULDER_SIGMA_M = 0.016
+_ARMPIT_SIGMA_M = 0.008
 _WRIST_SIGMA_M = 0.006
 _FINGER_SIGMA_M = 0.0028
 _HEAD_SIGMA_M = 0.010
@@ -45,7 +47,6 @@ class Binder:
             "leftLowerArm": capsule(arm.elbow, arm.at(arm.upper_m + arm.fore_m * 0.5), 0.045),
             "leftForearmTwist": capsule(arm.at(arm.upper_m + arm.fore_m * 0.5), arm.wrist, 0.040),
         }
-        self._shoulder = {"leftShoulder": capsule((0.062, 0.905, -0.004), (0.105, 0.905, -0.008), 0.040)}
 
     def rigid(self, points: Floats, joint: str) -> Floats:
         weights = np.zeros((len(points), len(self.rig.names)))
@@ -75,14 +76,38 @@ class Binder:
 
     def coat(self, points: Floats) -> Floats:
         """The coat with its half sleeves: trunk, shoulders, upper arms; the sleeve never follows the forearm."""
-        arm = self.anatomy.arm
-        sleeve = {"leftUpperArm": capsule(arm.at(0.03), arm.at(0.30), 0.055)}
-        return self.soft(points, self._trunk | self._both_sides(self._shoulder | sleeve), _BODY_SIGMA_M)
+        weights = self.soft(points, self._trunk | self._neck, _BODY_SIGMA_M)
+        left = self._shoulder_shares(points)
+        right = self._shoulder_shares(points * (-1.0, 1.0, 1.0))
+        weights *= (1 - left.sum(1) - right.sum(1))[:, None]
+        for side, shares in (("left", left), ("right", right)):
+            weights[:, self.rig.index[f"{side}Shoulder"]] += shares[:, 0]
+            weights[:, self.rig.index[f"{side}UpperArm"]] += shares[:, 1]
+        return weights
 
     def left_sleeve(self, points: Floats) -> Floats:
-        """The shirt's sleeve and cuff."""
-        bones = self._left_arm | self._shoulder | {"chest": self._trunk["chest"]}
-        return self.soft(points, bones, _ARM_SIGMA_M)
+        """The shirt's sleeve and cuff: at the shoulder bound as the coat over it, so that neither shows through."""
+        weights = self.coat(points)
+        upper = self.rig.index["leftUpperArm"]
+        share = weights[:, [upper]].copy()
+        weights[:, upper] = 0.0
+        return np.asarray(weights + share * self.soft(points, self._left_arm, _ARM_SIGMA_M))
+
+    def _shoulder_shares(self, points: Floats) -> Floats:
+        """(n, 2): what the left collar bone and the left upper arm hold of the cloth around the shoulder.
+
+        The trunk's surface and the sleeve's compete. Over the shoulder the change is long and round; in the armpit it
+        is short, or a raised arm would draw the coat's side up with it like a wing.
+        """
+        arm = self.anatomy.arm
+        sleeve = cone(arm.at(0.0), arm.at(0.30), 0.058, 0.060)(points)
+        over = smoothstep(-0.030, 0.030, (points - arm.shoulder) @ arm.up)
+        sigma = _ARMPIT_SIGMA_M + (_SHOULDER_SIGMA_M - _ARMPIT_SIGMA_M) * over
+        towards = self.anatomy.trunk(points) - 0.019 - sleeve
+        upper_arm = np.where(points[:, 0] > 0, 1.0 / (1.0 + np.exp(-np.clip(towards / sigma, -40.0, 40.0))), 0.0)
+        upper_arm *= smoothstep(0.055, 0.095, points[:, 0])
+        collar = smoothstep(0.050, 0.110, points[:, 0]) * smoothstep(0.815, 0.895, points[:, 1])
+        return np.stack([0.85 * collar * (1 - upper_arm), upper_arm], 1)
 
     def left_hand(self, points: Floats) -> Floats:
         """Forearm (half of its twist in the twist joint), palm and fingers."""
