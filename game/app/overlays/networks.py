@@ -83,4 +83,7 @@ def _draw_table(session: Session, canvas: Canvas, pair: list[Candidate], room: R
         if rank == 0:
             canvas.paragraph(Rect(room.x, y + 2, room.w, 36), candidate.reason, 12, fade(PALETTE["white"], 0.85))
             y += 38
+            if candidate.source:  # the take and span that is playing
+                canvas.text(room.x, y - 2, candidate.source, 12, fade(colour, 0.95))
+                y += 17
         y += 8
