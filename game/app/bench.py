@@ -57,22 +57,21 @@ def render() -> list[Row]:
 def autoplay() -> list[Row]:
     """Talks per second, with and without the body's planner."""
     from game.app.autoplay import play_episode
-    from game.app.body import BodyObserver
+    from game.app.body import BATCH, BodyObserver
     from game.app.content import load_talk_assets, stall_path
     from game.app.policies import POLICIES
 
     assets = load_talk_assets(stall_path("flea"))
 
     def talks(count: int, observer: BodyObserver | None) -> tuple[float, int]:
-        start, moves = time.perf_counter(), 0
-        for episode in range(count):
-            if observer is not None:
-                observer.begin(1, episode)
-            for _, after, _, _ in play_episode(assets, POLICIES["random"], 1, episode):
-                moves += 1
-                if observer is not None:
-                    observer.watch(assets, after)
-        return time.perf_counter() - start, moves
+        start = time.perf_counter()
+        played = [
+            [after for _, after, _, _ in play_episode(assets, POLICIES["random"], 1, episode)]
+            for episode in range(count)
+        ]
+        if observer is not None:
+            observer.watch(assets, played, 1)
+        return time.perf_counter() - start, sum(len(talk) for talk in played)
 
     talks(20, None)
     plain = [talks(150, None) for _ in range(3)]
@@ -81,8 +80,9 @@ def autoplay() -> list[Row]:
         row("autoplay: talk alone, choices/s", rate, unit="/s", more_is_better=True),
         row("autoplay: talk alone, episodes/s", [150 / s for s, _ in plain], unit="/s", more_is_better=True),
     ]
-    with_body = [talks(4, BodyObserver.load()) for _ in range(2)]
-    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", [4 / s for s, _ in with_body], unit="/s",
+    observer = BodyObserver.load(explain=False)
+    with_body = [talks(BATCH, observer) for _ in range(2)]
+    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", [BATCH / s for s, _ in with_body], unit="/s",
                     more_is_better=True))  # fmt: skip
     return rows
 
