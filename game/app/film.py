@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.app.arguments import parse_size
-from game.app.studio import Studio, add_studio_arguments, write_png
+from game.app.studio import Studio, add_studio_arguments, check_png, write_png
 from game.core.errors import BadInput
 
 __all__ = ["add_arguments", "run", "sheet"]
@@ -52,6 +52,7 @@ def sheet(pictures: list[NDArray[np.uint8]], columns: int) -> NDArray[np.uint8]:
 def _figure6(args: argparse.Namespace) -> int:
     from game.app.figure6 import SIZE_PX, draw_figure6
 
+    check_png(args.out)
     studio = Studio(args, args.size or SIZE_PX, "body")
     try:
         items = studio.session.assets.talk.script.items
@@ -77,6 +78,8 @@ def run(args: argparse.Namespace) -> int:
         raise BadInput("film", expected=f"at most {limit} pictures in 1 to 20 columns", seen=f"{count}, {args.columns}")
     if not args.strip and ((args.out.exists() and not args.out.is_dir()) or args.out.suffix):
         raise BadInput("--out", expected="a folder for the sequence (or --strip for one PNG)", seen=str(args.out))
+    if args.strip:
+        check_png(args.out)
     studio = Studio(args, args.size or ((400, 440) if args.strip else (1280, 720)), "body" if args.strip else "hero")
     try:
         if args.strip:

@@ -11,7 +11,7 @@ import argparse
 from pathlib import Path
 
 from game.app.arguments import parse_size
-from game.app.studio import Studio, add_studio_arguments, write_png
+from game.app.studio import Studio, add_studio_arguments, check_png, write_png
 from game.core.errors import BadInput
 
 __all__ = ["add_arguments", "run"]
@@ -29,6 +29,7 @@ def run(args: argparse.Namespace) -> int:
     """Simulate, draw, write."""
     if not 0.0 <= args.seconds <= 3600.0:
         raise BadInput("--seconds", expected="0 to 3600", seen=args.seconds)
+    check_png(args.out)
     studio = Studio(args, args.size, "hero")
     try:
         studio.run(args.seconds)

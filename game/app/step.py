@@ -25,6 +25,7 @@ from game.embos import GestureCues, Planner, PlannerSignal
 from game.emotion import Temperament, shown_emotion
 from game.face import FaceAsset, FaceSignal, advance_face, start_face, viseme_track
 from game.story import Spoken, TimedText
+from game.story.timing import CHARS_PER_S
 
 __all__ = [
     "STAGES", "StepAssets", "feelings_after", "leaked_emotion", "new_world", "speech_stage", "step", "targets_of",
@@ -127,9 +128,8 @@ def _settle(assets: StepAssets, world: World) -> World:
 
 def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
     factor = TEXT_SPEED[world.text_speed]
-    plain = TimedText(line.text(world.language), world.language)
-    chars_per_s = None if factor is None else factor * max(len(plain.text), 1) / max(plain.length_s, 1e-3)
-    timed = plain if chars_per_s is None else TimedText(plain.text, world.language, chars_per_s)
+    speed = CHARS_PER_S[world.language] * (1.0 if factor is None else factor)
+    timed = TimedText(line.text(world.language), world.language, speed)
     cues, visemes, start_s = None, None, world.time_s
     if line.speaker == "shopkeeper":
         cues, start_s = _cues(assets, world, timed)

@@ -29,7 +29,7 @@ from game.render import CLOSEUP, LEVELS, Camera, Device, FontSet, Hud, Renderer,
 from game.render.assets import save_png
 from game.story import Spoken
 
-__all__ = ["CAMERAS", "Studio", "add_studio_arguments", "write_png"]
+__all__ = ["CAMERAS", "Studio", "add_studio_arguments", "check_png", "write_png"]
 
 CAMERAS: dict[str, Camera] = {
     "hero": HOME_CAMERA,
@@ -160,13 +160,18 @@ class Studio:
             canvas.text(size, size * 0.6, self._label, size, font="bold")
 
 
-def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Write (h, w, 3) uint8 as a PNG, whole or not at all. Raises BadInput where that is impossible."""
+def check_png(path: Path) -> None:
+    """Refuse a place no picture can be written to, before anything is drawn. Raises BadInput."""
     if path.suffix.lower() != ".png":
         raise BadInput("--out", expected="a file name ending in .png", seen=str(path))
-    folder = path.resolve().parent
-    if not folder.is_dir():
+    if not path.resolve().parent.is_dir():
         raise BadInput("--out", expected="a folder that exists", seen=str(path.parent))
+
+
+def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Write (h, w, 3) uint8 as a PNG, whole or not at all. Raises BadInput where that is impossible."""
+    check_png(path)
+    folder = path.resolve().parent
     handle, name = tempfile.mkstemp(dir=folder, prefix=f".{path.stem}.", suffix=".png")
     os.close(handle)
     try:
