@@ -26,8 +26,10 @@ Floats = NDArray[np.float64]
 TICK_S = 1.0 / 30.0
 """The fixed step of the simulation, seconds."""
 
-TEXT_SPEED: dict[str, float | None] = {"slow": 0.6, "normal": 1.0, "fast": 1.8, "instant": None}
-"""How fast lines are spoken, as a factor on the language's own speed; None shows a line at once."""
+TEXT_SPEED: dict[str, float | None] = {"slow": 0.5, "normal": 0.75, "fast": 1.4, "instant": None}
+"""How fast lines are spoken, as a factor on the language's reading speed; normal leaves the hands time to speak too.
+
+None shows a line at once."""
 
 
 @dataclass(frozen=True)
