@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
 from game.animation import channels as ch
 from game.core import quaternion as quat
@@ -181,6 +180,14 @@ def additive_rows(rows: Rows, owned: NDArray[np.bool_], share: float) -> Rows:
     return result.astype(np.float32)
 
 
+def _moving_mean(values: Rows, width: int) -> Rows:
+    """(f, k) means over ``width`` frames around each, the ends held."""
+    before = width // 2
+    padded = np.pad(values.astype(np.float64), ((before + 1, width - 1 - before), (0, 0)), mode="edge")
+    total = padded.cumsum(axis=0)
+    return np.asarray((total[width:] - total[:-width]) / width, dtype=values.dtype)
+
+
 def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
     """(first frame, frames) of a stretch of whole periods in the middle of a unit, None where nothing repeats.
 
@@ -194,7 +201,7 @@ def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
     if room < 16 or moving.shape[1] == 0:
         return None
     # Slow drifts are no rhythm: what remains after a moving mean is.
-    moving = moving - uniform_filter1d(moving, min(30, room), axis=0, mode="nearest")
+    moving = moving - _moving_mean(moving, min(30, room))
     energy = float((moving * moving).mean())
     if energy < 1e-6:
         return None

@@ -95,6 +95,7 @@ def first_frame() -> None:
     args = argparse.Namespace(language="en", stall="flea", seed=1, mode="full", overlay=False)
     device = Device.headless(1280, 720)
     window = Window(open_session(args), device)
+    window.renderer.drafts = True  # as in a window
     window.draw()
     device.context.finish()
 

@@ -149,7 +149,8 @@ class Renderer(Owner):
     def _bake(self, key: BakeKey, canvas: _Canvas) -> bool:
         """See that the baked picture fits; True if it was drawn."""
         turned = canvas.seen is not None and key.camera != canvas.seen.camera
-        draft = self.drafts and turned and canvas.turning
+        # The very first picture is a draft too: it is there sooner, and the next one is whole.
+        draft = self.drafts and (self._frames == 0 or (turned and canvas.turning))
         canvas.turning, canvas.seen = turned, key
         if key == canvas.baked and (draft or not canvas.is_draft):
             return False
