@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from game.animation import channels as ch
 from game.core import quaternion as quat
@@ -164,28 +165,17 @@ def additive_rows(rows: Rows, owned: NDArray[np.bool_], share: float) -> Rows:
     result = np.where(owned[ch.PART_OF_CHANNEL], rows, np.float32(0.0))
     q = rows[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
     out = result[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
-    line = np.linspace(0.0, 1.0, count)[:, None]
-    for joint in ch.ADDITIVE_JOINTS:
-        if owned[ch.PART_OF_JOINT[joint]]:
-            continue
-        here = q[:, joint : joint + 1]
-        straight = quat.nlerp(here[:1], here[-1:], line)
-        delta = quat.multiply(quat.conjugate(straight), here)
-        delta = delta * np.where(delta[..., 3:] < 0.0, -1.0, 1.0)
-        out[:, joint, :3] = share * delta[:, 0, :3]
+    line = np.linspace(0.0, 1.0, count, dtype=rows.dtype)[:, None]
+    joints = ch.ADDITIVE_JOINTS[~owned[ch.PART_OF_JOINT[ch.ADDITIVE_JOINTS]]]
+    if len(joints):
+        here = q[:, joints]
+        delta = quat.multiply(quat.conjugate(quat.nlerp(here[:1], here[-1:], line)), here)
+        out[:, joints, :3] = share * np.where(delta[..., 3:] < 0.0, -delta[..., :3], delta[..., :3])
     if not owned[ch.PARTS.index("spine")]:
         root = rows[:, ch.ROOT]
         result[:, ch.ROOT] = share * (root - (root[:1] * (1.0 - line) + root[-1:] * line))
     result[:, ch.ROTATION] = out.reshape(count, -1)
     return result.astype(np.float32)
-
-
-def _moving_mean(values: Rows, width: int) -> Rows:
-    """(f, k) means over ``width`` frames around each, the ends held."""
-    before = width // 2
-    padded = np.pad(values.astype(np.float64), ((before + 1, width - 1 - before), (0, 0)), mode="edge")
-    total = padded.cumsum(axis=0)
-    return np.asarray((total[width:] - total[:-width]) / width, dtype=values.dtype)
 
 
 def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
@@ -201,7 +191,7 @@ def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:
     if room < 16 or moving.shape[1] == 0:
         return None
     # Slow drifts are no rhythm: what remains after a moving mean is.
-    moving = moving - _moving_mean(moving, min(30, room))
+    moving = moving - uniform_filter1d(moving, min(30, room), axis=0, mode="nearest")
     energy = float((moving * moving).mean())
     if energy < 1e-6:
         return None

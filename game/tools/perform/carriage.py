@@ -1,4 +1,4 @@
-"""Mannerisms of the trunk and the head: breath, glances, shivers, bounces, sways."""
+"""Mannerisms of trunk, head and knees: breath, glances and stares, shivers, bounces, sways."""
 
 from __future__ import annotations
 
@@ -148,6 +148,37 @@ def _shudder(m: Move) -> None:
     )
 
 
+def _stare(m: Move) -> None:
+    # The gaze fixes on something and the head stops for it; only the neck goes on, slowly.
+    m.body(m.start, 0.25, neck=5, head_pitch=-1, head_yaw=-4)
+    m.body(m.after(0.3), 1.4, m.stage.effort.settle, neck=9, lean=2)
+
+
+def _toss_head(m: Move) -> None:
+    # Two jerks of the head, each as short as a jerk can be.
+    m.body(m.start, 0.2, head_yaw=-11, head_pitch=-6, head_roll=5)
+    m.body(m.after(0.26), 0.2, head_yaw=10, head_pitch=5, head_roll=-4, twist=4)
+
+
+def _knee_jiggle(m: Move) -> None:
+    m.wave(
+        m.start,
+        m.leave,
+        fade=0.25,
+        up=lambda t: 0.006 * sine(4.7, t) - 0.004,
+        sideways=lambda t: 0.003 * sine(2.35, t),
+        shoulders=lambda t: 1.1 * sine(4.7, t, 0.05),
+        head_pitch=lambda t: 0.9 * sine(4.7, t, 0.07),
+    )
+
+
+def _peek(m: Move) -> None:
+    # Up by a hand's breadth, a look to each side, and the head is gone again.
+    m.body(m.start, 0.4, up=0.085, head_pitch=-6, neck=4)
+    m.body(m.arrive, 0.15, head_yaw=24)
+    m.body(m.arrive + 0.55 * (m.leave - m.arrive), 0.15, head_yaw=-20)
+
+
 CARRIAGE: Mapping[str, Act] = MappingProxyType(
     {
         "sob": Act(0.5, 0.6, _sob),
@@ -164,6 +195,10 @@ CARRIAGE: Mapping[str, Act] = MappingProxyType(
         "sniff": Act(0.42, 0.4, _sniff),
         "recoil": Act(0.45, 0.6, _recoil),
         "shudder": Act(0.2, 0.35, _shudder),
+        "stare": Act(0.3, 0.4, _stare),
+        "toss_head": Act(0.5, 0.35, _toss_head),
+        "knee_jiggle": Act(0.25, 0.3, _knee_jiggle),
+        "peek": Act(0.45, 0.35, _peek),
     }
 )
 """Mannerisms by name."""

@@ -135,6 +135,17 @@ def _draw_shape(m: Move) -> None:
     )
 
 
+def _draw_path(m: Move) -> None:
+    # From out here, round a bend, to over there; the head goes along and arrives first.
+    m.body(m.start, 0.4, head_pitch=5, head_yaw=14, twist=4)
+    m.hand("main", m.start, 0.42, "path_from")
+    m.stroke = m.arrive + 0.05
+    way = max(m.leave - m.stroke, 0.5) / m.tempo
+    m.body(m.stroke, 0.7 * way, m.stage.effort.settle, head_yaw=-12, head_pitch=2, twist=-5)
+    m.hand("main", m.stroke, 0.5 * way, "path_bend", ease=m.stage.effort.settle)
+    m.hand("main", m.stroke + 0.40 * way * m.tempo, 0.55 * way, "path_to", ease=m.stage.effort.settle)
+
+
 def _count_price(m: Move) -> None:
     m.body(m.start, 0.35, head_pitch=-1, head_roll=4, lean=2)
     m.hand("main", m.start, 0.45, "count")
@@ -365,6 +376,7 @@ GESTURES: Mapping[str, Act] = MappingProxyType(
         "show_size": Act(0.9, 0.55, _show_size),
         "show_small": Act(0.9, 0.55, _show_small),
         "draw_shape": Act(0.5, 0.5, _draw_shape),
+        "draw_path": Act(0.5, 0.5, _draw_path),
         "count_price": Act(0.5, 0.5, _count_price),
         "beat": Act(0.42, 0.45, _beat),
         "chop": Act(0.4, 0.45, _chop),

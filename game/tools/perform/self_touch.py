@@ -326,8 +326,29 @@ def _hand_on_chest(m: Move) -> None:
 
 def _stretch(m: Move) -> None:
     m.body(m.start, 0.7, lift=10, lean=-6, head_pitch=-10, side=-4, up=0.012, shoulders=8)
-    m.hand("both", m.start, 0.8, "stretch")
+    m.hand("both", m.start, 0.5, "ready")
+    m.hand("both", m.after(0.3), 0.65, "stretch")
     m.breathe((m.start, 0.3), (m.arrive, 1.7), (m.leave, 1.5), (m.end, 0.0))
+
+
+def _touch_mouth(m: Move) -> None:
+    m.body(m.start, 0.45, head_pitch=3, head_roll=4, head_yaw=-3)
+    m.hand("main", m.after(0.06), 0.5, "lips")
+    m.wave(m.arrive, m.leave, hand="main", shift=lambda t: (0.010 * sine(1.3, t), 0.003 * sine(2.6, t), 0.002))
+
+
+def _yawn(m: Move) -> None:
+    # The chest fills first, the head goes back with it, the hand comes late, and everything sinks afterwards.
+    m.body(m.start, 0.8, lift=7, lean=-4, shoulders=7, head_pitch=-9, head_roll=5)
+    m.hand("main", m.after(0.25), 0.55, "mouth")
+    m.body(m.leave - 0.2, 0.5, m.stage.effort.settle, lift=-1, lean=1, shoulders=-4, head_pitch=4)
+    m.breathe((m.start, 0.2), (m.arrive + 0.3, 2.0), (m.leave, 1.7), (m.end, -0.3))
+
+
+def _look_at_watch(m: Move) -> None:
+    m.hand("main", m.start, 0.5, "watch")
+    m.body(m.after(0.1), 0.45, head_pitch=13, head_yaw=8, head_roll=3, shoulder_tilt=3)
+    m.body(m.leave - 0.15, 0.3, head_pitch=-2, head_yaw=-3)
 
 
 SELF_TOUCH: Mapping[str, Act] = MappingProxyType(
@@ -362,6 +383,9 @@ SELF_TOUCH: Mapping[str, Act] = MappingProxyType(
         "flick_hand": Act(0.4, 0.4, _flick_hand),
         "touch_collar": Act(0.55, 0.5, _touch_collar),
         "hand_on_chest": Act(0.55, 0.55, _hand_on_chest),
+        "touch_mouth": Act(0.6, 0.55, _touch_mouth),
+        "yawn": Act(0.9, 0.7, _yawn),
+        "look_at_watch": Act(0.6, 0.5, _look_at_watch),
         "stretch": Act(0.9, 0.8, _stretch),
     }
 )

@@ -25,6 +25,9 @@ __all__ = ["Annotation", "Span", "annotation_yaml", "build_takes", "perform_scor
 
 _AUTHOR = "procedural performance"
 _BREATHER_S = 0.06
+_TAKEN = 0.8
+_LANDED_S, _LANDED = 0.4, 0.3
+"""An annotator calls a posture taken after 80 % of the way, a quick one once it has also settled; the way is none's."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +113,7 @@ def perform_score(score: Score, seed: int, length_s: float | None = None) -> tup
     stage = Stage(np.arange(round(length / DT_S)) * DT_S, effort, targets, presets)
     occupied = _Occupied()
     spans: list[Span] = []
-    postures: list[tuple[float, str]] = []
+    postures: list[tuple[float, float, str]] = []
     for owner, planned in enumerate(score.cues):
         cue = _vary(planned, variation)
         if cue.do not in repertoire or (cue.do not in POSTURES and cue.do not in acts):
@@ -122,8 +125,10 @@ def perform_score(score: Score, seed: int, length_s: float | None = None) -> tup
         if cue.at_s >= length:
             continue
         if what.layer == "posture":
-            take_posture(stage, cue, owner)
-            postures.append((cue.at_s, cue.do))
+            reached = take_posture(stage, cue, owner)
+            way_s = reached - cue.at_s
+            taken = cue.at_s + (max(_TAKEN * way_s, _LANDED_S + _LANDED * way_s) if postures else 0.0)
+            postures.append((cue.at_s, taken, cue.do))
             occupied.take(what, cue.at_s)
             continue
         act = acts[cue.do]
@@ -135,8 +140,10 @@ def perform_score(score: Score, seed: int, length_s: float | None = None) -> tup
         if what.layer == "gesture":
             stroke = round(move.arrive if move.stroke is None else move.stroke, 3)
         spans.append(Span(what.layer, cue.do, cue.at_s, min(move.shown_until, length), stroke, cue.words))
-    ends = [start for start, _ in postures[1:]] + [length]
-    spans += [Span("posture", name, start, end) for (start, name), end in zip(postures, ends, strict=True)]
+    ends = [left for left, _, _ in postures[1:]] + [length]
+    spans += [
+        Span("posture", name, taken, end) for (_, taken, name), end in zip(postures, ends, strict=True) if taken < end
+    ]
     spans.sort(key=lambda span: (span.start_s, span.layer))
     clip = render_stage(stage, always_on, score.take)
     return clip, Annotation(score.take, score.emotion, tuple(spans))
