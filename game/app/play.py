@@ -13,6 +13,7 @@ screen, Esc back.
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 import sys
 import time
@@ -222,6 +223,8 @@ def _choose_level(window: Window, settings: Settings) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window and play until it is closed."""
+    # What is loaded stays: collecting garbage among it would only cost time, now and at every later collection.
+    gc.disable()
     try:
         need_display()
         session = open_session(args)
@@ -236,6 +239,8 @@ def run(args: argparse.Namespace) -> int:
         window.draw()
         _set_icon(window)
         pygame.display.flip()
+        gc.freeze()
+        gc.enable()
         _choose_level(window, session.settings)
         _loop(window)
     finally:
