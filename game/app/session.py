@@ -13,7 +13,7 @@ from game.app.strings import Strings
 from game.app.ui import Canvas
 from game.app.world import Intent, World
 
-__all__ = ["Screen", "Session"]
+__all__ = ["MenuScreen", "Screen", "Session"]
 
 
 @dataclass
@@ -44,3 +44,13 @@ class Screen(Protocol):
     def after_tick(self, session: Session) -> Screen | None: ...
 
     def draw(self, session: Session, canvas: Canvas) -> None: ...
+
+
+class MenuScreen:
+    """What screens without a talk have in common: they ask nothing of the tick and wait for the player."""
+
+    def intent(self) -> Intent:
+        return Intent()
+
+    def after_tick(self, session: Session) -> Screen | None:
+        return None

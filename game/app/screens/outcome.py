@@ -8,10 +8,10 @@ import numpy as np
 
 from game.app.afternoon import finish_talk
 from game.app.input import Action
-from game.app.session import Screen, Session
+from game.app.session import MenuScreen, Screen, Session
 from game.app.talk import TalkState, ask_money
 from game.app.ui import FEELING_COLOURS, INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.app.world import Intent, Mark, leave_talk
+from game.app.world import Mark, leave_talk
 from game.core.emotion_space import SIX
 
 __all__ = ["OutcomeScreen"]
@@ -20,7 +20,7 @@ QUALITY_COLOURS = {"right": PALETTE["teal"], "neutral": PALETTE["faint"], "wrong
 
 
 @dataclass
-class OutcomeScreen:
+class OutcomeScreen(MenuScreen):
     """Shows the talk that just ended. The afternoon has been booked when it appears."""
 
     talk: TalkState
@@ -45,12 +45,6 @@ class OutcomeScreen:
             return TableScreen()
         if pressed == "leave_market":
             return DayOverScreen()
-        return None
-
-    def intent(self) -> Intent:
-        return Intent()
-
-    def after_tick(self, session: Session) -> Screen | None:
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:

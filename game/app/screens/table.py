@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from game.app.afternoon import visit_stall
 from game.app.input import Action
-from game.app.session import Screen, Session
+from game.app.session import MenuScreen, Screen, Session
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.app.world import Intent, enter_talk
+from game.app.world import enter_talk
 
 __all__ = ["DayOverScreen", "TableScreen"]
 
 
-class TableScreen:
+class TableScreen(MenuScreen):
     """Pick a thing to ask about, or leave the market."""
 
     def __init__(self) -> None:
@@ -38,12 +38,6 @@ class TableScreen:
             talk = visit_stall(session.assets.talk, session.afternoon, pressed)
             session.world = enter_talk(session.assets, session.world, talk)
             return TalkScreen()
-        return None
-
-    def intent(self) -> Intent:
-        return Intent()
-
-    def after_tick(self, session: Session) -> Screen | None:
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:
@@ -76,7 +70,7 @@ class TableScreen:
             canvas.text(24, canvas.height - 40, session.message, 15, PALETTE["white"])
 
 
-class DayOverScreen:
+class DayOverScreen(MenuScreen):
     """What the afternoon came to."""
 
     def __init__(self) -> None:
@@ -87,12 +81,6 @@ class DayOverScreen:
             from game.app.screens.title import TitleScreen
 
             return TitleScreen()
-        return None
-
-    def intent(self) -> Intent:
-        return Intent()
-
-    def after_tick(self, session: Session) -> Screen | None:
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:

@@ -6,15 +6,15 @@ from dataclasses import replace
 
 from game.app.afternoon import Afternoon
 from game.app.input import Action
-from game.app.session import Screen, Session
+from game.app.session import MenuScreen, Screen, Session
 from game.app.settings import CHOICES, Settings, save_settings
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.app.world import Intent, leave_talk
+from game.app.world import leave_talk
 
 __all__ = ["SettingsScreen", "TitleScreen"]
 
 
-class TitleScreen:
+class TitleScreen(MenuScreen):
     """Where the game begins and where an afternoon ends."""
 
     def __init__(self) -> None:
@@ -42,12 +42,6 @@ class TitleScreen:
             session.running = False
         return None
 
-    def intent(self) -> Intent:
-        return Intent()
-
-    def after_tick(self, session: Session) -> Screen | None:
-        return None
-
     def draw(self, session: Session, canvas: Canvas) -> None:
         s = session.strings
         left, width = 64.0, 320.0
@@ -73,7 +67,7 @@ class TitleScreen:
             canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
 
 
-class SettingsScreen:
+class SettingsScreen(MenuScreen):
     """The player's settings, each pressed through its values."""
 
     def __init__(self, before: Screen) -> None:
@@ -86,12 +80,6 @@ class SettingsScreen:
             return self._before
         if pressed in CHOICES:
             change_setting(session, pressed)
-        return None
-
-    def intent(self) -> Intent:
-        return Intent()
-
-    def after_tick(self, session: Session) -> Screen | None:
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:
