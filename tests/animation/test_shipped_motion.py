@@ -14,10 +14,6 @@ from game.embos import Planner, PlannerSignal, UnitLibrary, load_config
 DT = 1.0 / 30.0
 UNITS = ASSETS / "motion" / "units.yaml"
 
-pytestmark = pytest.mark.skipif(
-    not (UNITS.exists() and (ASSETS / "motion" / "clips.npz").exists()), reason="the motion units have not been built"
-)
-
 
 @pytest.fixture(scope="module")
 def shipped() -> tuple[Planner, Performer]:
