@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from game.animation import GAZE_CUSTOMER, Performer, PerformSignal, joint_accelerations, largest_joint_acceleration
-from game.core.emotion_space import emotion_vector
+from game.core.emotion_space import EMOTIONS, emotion_vector
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
 from game.core.paths import ASSETS
 from game.embos import Planner, PlannerSignal, UnitLibrary, load_config
+from game.tools.perform import contact
 
 DT = 1.0 / 30.0
 UNITS = ASSETS / "motion" / "units.yaml"
@@ -54,3 +55,28 @@ def test_composed_motion_accelerates_no_harder_than_the_take(shipped: tuple[Plan
         wrist = position[:, REFERENCE.index[f"{side}Hand"]]
         over = (wrist[:, 2] > 0.2) & (wrist[:, 2] < 0.7)
         assert wrist[over, 1].min(initial=1.0) > TABLE_TOP_M + 0.005, "no hand goes through the table"
+
+
+@pytest.mark.parametrize("emotion", EMOTIONS)
+def test_hands_stay_out_of_body_and_table(shipped: tuple[Planner, Performer], emotion: str) -> None:
+    """Whatever follows whatever: a brushing touch on the way is all there is, and it is rare."""
+    planner, performer = shipped
+    felt = emotion_vector({emotion: 0.9 if emotion != "neutral" else 1.0})[None]
+    plan, state = planner.start(1, 79), performer.start(1, 79)
+    words = np.zeros((1, len(planner.library.gestures)))
+    rotation, root = [], []
+    for tick in range(900):
+        plan, decisions = planner.advance(plan, PlannerSignal(felt, words, tick * DT), DT)
+        signal = PerformSignal(felt, GAZE_CUSTOMER[None], np.zeros(1))
+        state, pose = performer.advance(state, decisions, signal, DT)
+        rotation.append(pose.rotation[0])
+        root.append(pose.root[0])
+    shift = np.tile(REFERENCE.rest_translation, (len(root), 1, 1))
+    shift[:, 0] = root
+    position, turned = REFERENCE.to_model(np.stack(rotation).astype(float), shift)
+    for side in ("left", "right"):
+        points, radii = contact.arm_points(position, turned, side)
+        body, table = contact.body_depth(points, radii, position, turned), contact.table_depth(points, radii)
+        depth = np.maximum(body, table)[:, : contact.HAND_POINTS].max(axis=1)
+        assert depth.max() < 0.03
+        assert (depth > 0.012).mean() < 0.02
