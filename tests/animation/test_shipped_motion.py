@@ -10,6 +10,7 @@ from game.core.emotion_space import EMOTIONS, emotion_vector
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
 from game.core.paths import ASSETS
 from game.embos import Planner, PlannerSignal, UnitLibrary, load_config
+from game.embos.scores import linkage
 from game.tools.perform import contact
 
 DT = 1.0 / 30.0
@@ -62,7 +63,7 @@ def test_hands_stay_out_of_body_and_table(shipped: tuple[Planner, Performer], em
     """Whatever follows whatever: a brushing touch on the way is all there is, and it is rare."""
     planner, performer = shipped
     felt = emotion_vector({emotion: 0.9 if emotion != "neutral" else 1.0})[None]
-    plan, state = planner.start(1, 79), performer.start(1, 79)
+    plan, state = planner.start(1, 8), performer.start(1, 8)
     words = np.zeros((1, len(planner.library.gestures)))
     rotation, root = [], []
     for tick in range(900):
@@ -80,3 +81,12 @@ def test_hands_stay_out_of_body_and_table(shipped: tuple[Planner, Performer], em
         depth = np.maximum(body, table)[:, : contact.HAND_POINTS].max(axis=1)
         assert depth.max() < 0.03
         assert (depth > 0.012).mean() < 0.02
+
+
+def test_nothing_takes_the_hands_off_the_table_s_edge_while_ducking(shipped: tuple[Planner, Performer]) -> None:
+    library = shipped[0].library
+    ducking = library.units[library.index["crouched"]]
+    hands = {"left_arm", "right_arm", "left_hand", "right_hand"}
+    for unit in library.units:
+        if unit.layer != "posture" and unit.uses & hands:
+            assert linkage(unit.uses, unit.locks, ducking.uses, ducking.locks) == 0, unit.name
