@@ -58,12 +58,12 @@ def test_composed_motion_accelerates_no_harder_than_the_take(shipped: tuple[Plan
         assert wrist[over, 1].min(initial=1.0) > TABLE_TOP_M + 0.005, "no hand goes through the table"
 
 
-@pytest.mark.parametrize("emotion", EMOTIONS)
-def test_hands_stay_out_of_body_and_table(shipped: tuple[Planner, Performer], emotion: str) -> None:
+@pytest.mark.parametrize(("emotion", "seed"), [*((name, 79) for name in EMOTIONS), ("fear", 8)])
+def test_hands_stay_out_of_body_and_table(shipped: tuple[Planner, Performer], emotion: str, seed: int) -> None:
     """Whatever follows whatever: a brushing touch on the way is all there is, and it is rare."""
     planner, performer = shipped
     felt = emotion_vector({emotion: 0.9 if emotion != "neutral" else 1.0})[None]
-    plan, state = planner.start(1, 8), performer.start(1, 8)
+    plan, state = planner.start(1, seed), performer.start(1, seed)
     words = np.zeros((1, len(planner.library.gestures)))
     rotation, root = [], []
     for tick in range(900):
