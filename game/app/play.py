@@ -25,13 +25,14 @@ import pygame
 
 from game.app.afternoon import Afternoon
 from game.app.arguments import parse_size
+from game.app.director import direct, moment_of, start_direction
 from game.app.input import Action, action_of
 from game.app.loading import load_step_assets
 from game.app.saves import load_game, save_game
-from game.app.screens import OutcomeScreen, TableScreen, TalkScreen, TitleScreen
+from game.app.screens import TalkScreen, TitleScreen
 from game.app.session import Screen, Session
 from game.app.settings import Settings, load_settings, user_folder
-from game.app.stage import HOME_CAMERA, SIDE_CAMERA, TALK_CAMERA, StageShow, load_stage
+from game.app.stage import StageShow, load_stage
 from game.app.step import new_world, step
 from game.app.strings import load_strings
 from game.app.ui import Canvas
@@ -41,7 +42,6 @@ from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Rende
 
 __all__ = ["Window", "add_arguments", "need_display", "run"]
 
-CAMERAS = {TableScreen: TALK_CAMERA, TalkScreen: TALK_CAMERA, OutcomeScreen: SIDE_CAMERA}
 MAX_TICKS_A_FRAME = 5
 """After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
 
@@ -74,6 +74,7 @@ class Window:
         )
         self.show = StageShow(self.stage)
         self.screen: Screen = TitleScreen()
+        self.direction = start_direction(session.assets.talk.script.stall)
         self._language = _speakable(session)
         self._late_s = 0.0
         self._tick(None)
@@ -122,6 +123,13 @@ class Window:
         if intent.choice is not None:
             self._autosave()
         self._go(self.screen.after_tick(session))
+        self._direct()
+
+    def _direct(self) -> None:
+        session, screen = self.session, self.screen
+        offering = isinstance(screen, TalkScreen) and screen.offering
+        moment = moment_of(session.world, screen.scene, place=session.assets.talk.script.stall, offering=offering)
+        self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
 
     def advance(self, elapsed_s: float) -> None:
         """Let the game run for some real time, in whole ticks."""
@@ -137,10 +145,9 @@ class Window:
             self._language = _speakable(session)
         params = session.world.body.face_params
         assert params is not None
-        camera = CAMERAS.get(type(self.screen), HOME_CAMERA)
         view = self.show.frame(
             params,
-            camera=camera,
+            camera=self.direction.camera(session.world.time_s + self._late_s),
             share=self._late_s / TICK_S,
             show_face=session.world.mode != "body",
             hidden_items=self.stage.gone(session.afternoon.owned),

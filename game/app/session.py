@@ -35,7 +35,12 @@ class Session:
 
 
 class Screen(Protocol):
-    """One screen of the game. ``handle`` may return another screen to go to; ``intent`` is what the next tick does."""
+    """One screen of the game. ``handle`` may return another screen to go to; ``intent`` is what the next tick does.
+
+    scene: which framing it wants, one of the director's scenes.
+    """
+
+    scene: str
 
     def handle(self, session: Session, action: Action) -> Screen | None: ...
 
@@ -48,6 +53,8 @@ class Screen(Protocol):
 
 class MenuScreen:
     """What screens without a talk have in common: they ask nothing of the tick and wait for the player."""
+
+    scene = "title"
 
     def intent(self) -> Intent:
         return Intent()

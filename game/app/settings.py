@@ -21,6 +21,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "fullscreen": (False, True),
     "ui_scale": (1.0, 1.25, 1.5, 2.0),
     "captions": (False, True),
+    "reduced_motion": (False, True),
     "quality": ("auto", "low", "medium", "default", "high", "ultra"),
 }
 """Every setting with the values it may have; the first is not always the default."""
@@ -28,13 +29,14 @@ CHOICES: dict[str, tuple[Any, ...]] = {
 
 @dataclass(frozen=True)
 class Settings:
-    """What the player has chosen. captions: describe in words what the body shows."""
+    """What the player has chosen. captions: describe in words what the body shows. reduced_motion: the camera cuts."""
 
     language: str = "en"
     text_speed: str = "normal"
     fullscreen: bool = False
     ui_scale: float = 1.0
     captions: bool = False
+    reduced_motion: bool = False
     quality: str = "auto"
 
     def next(self, name: str) -> Settings:

@@ -17,17 +17,7 @@ from game.formats import load_yaml
 from game.render import HERO, Camera, CharacterModel, FrameView, Hud, StaticMesh
 from game.render.assets import load_character, load_picture, load_stall
 
-__all__ = ["HOME_CAMERA", "SIDE_CAMERA", "TALK_CAMERA", "Puppet", "StageAssets", "StageShow", "load_stage"]
-
-TALK_CAMERA = Camera((0.36, 1.15, 3.16), (0.26, 0.93, 0.0), 25.5)
-"""The talk is framed with room on the right for what may be said, and the hands above the subtitles."""
-
-
-SIDE_CAMERA = Camera((0.66, 1.15, 3.16), (0.56, 0.95, 0.0), 25.5)
-"""Where a sheet covers the right half."""
-
-HOME_CAMERA = HERO
-"""Title and menus: the whole stall."""
+__all__ = ["Puppet", "StageAssets", "StageShow", "load_stage"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +103,7 @@ class StageShow:
         self,
         params: FaceParams,
         *,
-        camera: Camera = TALK_CAMERA,
+        camera: Camera = HERO,
         share: float = 1.0,
         show_face: bool = True,
         hidden_items: frozenset[str] = frozenset(),

@@ -19,7 +19,8 @@ from game.app.loading import load_step_assets
 from game.app.overlays import draw_overlays
 from game.app.session import Session
 from game.app.settings import Settings
-from game.app.stage import HOME_CAMERA, TALK_CAMERA, StageShow, load_stage
+from game.app.shots import ESTABLISHING, SHOTS
+from game.app.stage import StageShow, load_stage
 from game.app.step import new_world, step
 from game.app.strings import load_strings
 from game.app.ui import PALETTE, Canvas, Rect
@@ -32,8 +33,9 @@ from game.story import Spoken
 __all__ = ["CAMERAS", "Studio", "add_studio_arguments", "check_png", "write_png"]
 
 CAMERAS: dict[str, Camera] = {
-    "hero": HOME_CAMERA,
-    "talk": TALK_CAMERA,
+    "hero": SHOTS["home"],
+    "establishing": ESTABLISHING,
+    **{name: camera for name, camera in SHOTS.items() if name != "home"},
     "closeup": CLOSEUP,
     "body": Camera((0.0, 1.17, 2.85), (0.0, 0.965, 0.0), 13.5),
 }

@@ -23,6 +23,8 @@ QUALITY_COLOURS = {"right": PALETTE["teal"], "neutral": PALETTE["faint"], "wrong
 class OutcomeScreen(MenuScreen):
     """Shows the talk that just ended. The afternoon has been booked when it appears."""
 
+    scene = "outcome"
+
     talk: TalkState
     marks: tuple[Mark, ...]
     buttons: Buttons

@@ -14,6 +14,8 @@ __all__ = ["DayOverScreen", "TableScreen"]
 class TableScreen(MenuScreen):
     """Pick a thing to ask about, or leave the market."""
 
+    scene = "table"
+
     def __init__(self) -> None:
         self._buttons = Buttons()
 

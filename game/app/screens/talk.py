@@ -20,11 +20,18 @@ STANDING = {"offer": "b", "wait": "w", "leave": "g"}
 class TalkScreen:
     """Watch, choose what to say, say a price with it or not, wait, or go."""
 
+    scene = "talk"
+
     def __init__(self) -> None:
         self._buttons = Buttons()
         self._with_offer = False
         self._amount = 0
         self._intent = Intent()
+
+    @property
+    def offering(self) -> bool:
+        """Whether an offer lies on the table, not yet said."""
+        return self._with_offer
 
     # --- input ---------------------------------------------------------------------------------------------------
     def handle(self, session: Session, action: Action) -> Screen | None:
