@@ -38,8 +38,10 @@ TABLE_BACK_Z_M = 0.155
 TABLE_CLEARANCE_M = 0.004
 SOFTNESS_M = 0.006
 """The push begins this far before the touch."""
+PASSES = 3
+"""Each leaves about a third of what contacts that pull apart left inside."""
 DEEPEST_M = 0.12
-"""Points further inside than this came from below the table: they are left to the clip."""
+"""Points further inside than this, by the shortest way, are left to the clip."""
 
 BODY_JOINTS = tuple(joint for joint, _, _ in BODY)
 _INVERSE = np.array([np.divide(1.0, r) for _, _, r in BODY], dtype=np.float32)
@@ -82,23 +84,33 @@ def _away(maps: Floats, at: Floats, slope: Floats) -> Floats:
 
 def push_out(maps: Floats, points: Floats) -> Floats:
     """points: (n, 2, 7, 3) of both hands in model space -> push (n, 2, 3), metres; 0 where all is clear."""
-    n = len(points)
-    push = np.zeros((n, 2, 3), dtype=np.float32)
-    at, distance, slope = _distance(maps, points.reshape(n, 14, 3))
-    depth = _REACH - distance
-    if depth.max() > -SOFTNESS_M:
-        depth = _soft(depth)
-        away = _away(maps, at, slope)
-        cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
-        # The deepest contact leads, others join in as they come near: no switching.
-        weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
-        amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
-        push += amount.sum(axis=(1, 4)).swapaxes(-1, -2)
+    push = np.zeros((len(points), 2, 3), dtype=np.float32)
+    for _ in range(PASSES):
+        # Contacts that pull apart leave something inside: what is left is pushed again.
+        if not _push_from_body(maps, points + push[:, :, None], push):
+            break
     if points[..., 1].min() < TABLE_TOP_M + _TALLEST:
         up, back = _table(points)
         push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
         push[..., 2] -= back
     return push
+
+
+def _push_from_body(maps: Floats, points: Floats, push: Floats) -> bool:
+    """Add to push (n, 2, 3) what the points' contacts with the body ask for; False where nothing is near it."""
+    n = len(points)
+    at, distance, slope = _distance(maps, points.reshape(n, 14, 3))
+    depth = _REACH - distance
+    if depth.max() <= -SOFTNESS_M:
+        return False
+    depth = _soft(depth)
+    away = _away(maps, at, slope)
+    cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
+    # The deepest contact leads, others join in as they come near: no switching.
+    weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
+    amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
+    push += amount.sum(axis=(1, 4)).swapaxes(-1, -2)
+    return True
 
 
 def _soft(depth: Floats) -> Floats:
@@ -114,10 +126,10 @@ def _table(points: Floats) -> tuple[Floats, Floats]:
     radius = POINT_RADII + np.float32(TABLE_CLEARANCE_M)
     up = np.clip(TABLE_TOP_M + radius - y, 0.0, None)
     back = np.clip(z - (TABLE_BACK_Z_M - radius), 0.0, None)
-    inside = (up > 0.0) & (back > 0.0) & (z < TABLE_FRONT_Z_M + 0.04) & (up < DEEPEST_M)
-    # Near the edge the short way out is backward, elsewhere upward; between them the two share.
-    share = back * back / np.maximum(back * back + up * up, np.float32(1e-12))
+    inside = (up > 0.0) & (back > 0.0) & (z < TABLE_FRONT_Z_M + 0.04) & (np.minimum(up, back) < DEEPEST_M)
+    # Near the edge the short way out is backward, elsewhere upward; where both are as short, both are gone.
+    share = 2.0 * back * back / np.maximum(back * back + up * up, np.float32(1e-12))
     return (
-        np.where(inside, up * share, 0.0).max(axis=-1),
-        np.where(inside, back * (1.0 - share), 0.0).max(axis=-1),
+        np.where(inside, up * np.minimum(share, 1.0), 0.0).max(axis=-1),
+        np.where(inside, back * np.minimum(2.0 - share, 1.0), 0.0).max(axis=-1),
     )

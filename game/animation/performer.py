@@ -34,7 +34,7 @@ MODES: tuple[Mode, ...] = ("full", "gestures", "body", "face")
 body does (the face is another stage's); ``face``: the body stands still at neutral."""
 
 PUSH_HALF_LIFE_S = 0.025
-"""How softly a hand gives way to the body and the table."""
+"""How softly body and table let go of a hand."""
 
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
 _NEUTRAL.setflags(write=False)
@@ -136,6 +136,7 @@ class Performer:
         if self.collide:
             wanted = self._clearance(joints, ends, hand, row)
             push, push_speed = critical_spring(push, push_speed, wanted, PUSH_HALF_LIFE_S, dt_s)
+            push = _held_off(push, wanted)
             hand[:, :, :3, 3] += push
         self._place_limbs(rotation, joints, ends, hand)
         head, chest = joints[:, _HEAD], joints[:, _CHEST]
@@ -255,6 +256,13 @@ class Performer:
         above[:, :4] = joints.take(figure.SHOULDERS, axis=1)[..., :3, :3]
         above[:, 4:] = model[:, :8]
         rotation[:, _ENDS] = bl.from_matrix(above.swapaxes(-1, -2) @ model)
+
+
+def _held_off(push: Floats, wanted: Floats) -> Floats:
+    """The push, along its way at least what is wanted: a surface stops a hand at once, and lets go of it softly."""
+    square = (wanted * wanted).sum(axis=-1, keepdims=True)
+    lacking = 1.0 - (push * wanted).sum(axis=-1, keepdims=True) / np.maximum(square, 1e-12)
+    return np.asarray(push + wanted * np.maximum(lacking, 0.0))
 
 
 def _shares(signal: PerformSignal) -> Floats:
