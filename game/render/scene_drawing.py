@@ -19,7 +19,7 @@ from game.render.targets import BakeTargets
 __all__ = ["BakeKey", "SceneDrawing"]
 
 _SHADOW_SIZE = 1536
-_NO_SHADOW = ("awning",)  # it would shade the whole stall
+_NO_SHADOW = ("awning", "sway", "spin")  # it would shade the whole stall; what moves casts none either
 _STUDIO_TOP, _STUDIO_BOTTOM = (252, 243, 226), (228, 199, 168)
 _DARK_FLOOR = 0.80
 _HORIZON = 1.0 - 262.0 / 720.0  # height of the painted horizon in the backdrop, from below
@@ -168,7 +168,7 @@ class SceneDrawing(Owner):
         self._context.enable_only(moderngl.DEPTH_TEST)
         self._context.depth_func = "<"
         for run in runs:
-            if run.group not in _NO_SHADOW:
+            if run.group.split(":")[0] not in _NO_SHADOW:
                 self._caster.render(vertices=run.count, first=run.first)
 
     def _draw_backdrop(self, key: BakeKey, gain: float) -> None:

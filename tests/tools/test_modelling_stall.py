@@ -12,7 +12,8 @@ from game.core.errors import BadInput
 from game.core.humanoid import TABLE_TOP_M
 from game.core.paths import ASSETS
 from game.formats import GltfFile, read_gltf
-from game.tools.modelling.goods import GOODS, cups
+from game.tools.modelling.goods import GOODS
+from game.tools.modelling.goods_flea import cups
 from game.tools.modelling.stall import load_stall
 
 FOLDER = ASSETS / "stalls"

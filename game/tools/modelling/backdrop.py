@@ -6,7 +6,7 @@ Everything is blurred, so hard edges need no antialiasing of their own beyond be
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFilter
 
 from game.tools.modelling.fields import Floats
 
-__all__ = ["paint_backdrop"]
+__all__ = ["BACKDROPS", "paint_backdrop"]
 
 _VIEW = (1280, 720)
 _SIZE = (2048, 1152)
@@ -169,9 +169,8 @@ def _graded(image: Image.Image) -> Image.Image:
     return Image.fromarray(np.clip(pixels.round(), 0, 255).astype(np.uint8))
 
 
-def paint_backdrop(path: Path, rng: np.random.Generator) -> None:
-    """Write the 2048 x 1152 picture as PNG."""
-    canvas = _Canvas()
+def _market(canvas: _Canvas, rng: np.random.Generator) -> None:
+    """A row of striped stalls before a town, people, bunting."""
     _sky(canvas, rng)
     _town(canvas, rng)
     _ground(canvas, rng)
@@ -191,5 +190,15 @@ def paint_backdrop(path: Path, rng: np.random.Generator) -> None:
     for _ in range(26):
         x, y, radius = rng.uniform(0, 1280), rng.uniform(120, 520), rng.uniform(8, 24)
         canvas.oval(x, y, radius, radius, 0xFFF2C0, rng.uniform(0.08, 0.25))
+
+
+BACKDROPS: Mapping[str, Callable[[_Canvas, np.random.Generator], None]] = {"market": _market}
+"""Recipe name, as ``backdrop.recipe`` of a stall's YAML gives it -> what paints it."""
+
+
+def paint_backdrop(path: Path, recipe: str, rng: np.random.Generator) -> None:
+    """Write the 2048 x 1152 picture as PNG."""
+    canvas = _Canvas()
+    BACKDROPS[recipe](canvas, rng)
     path.parent.mkdir(parents=True, exist_ok=True)
     _graded(canvas.image).save(path, optimize=True)
