@@ -102,7 +102,7 @@ class Bunting:
 
     def _path(self, share: Floats) -> Floats:
         start, end = np.array(self.start), np.array(self.end)
-        line = start + (end - start) * share[:, None]
+        line: Floats = start + (end - start) * share[:, None]
         line[:, 1] -= self.drop * 4 * share * (1 - share)
         return line
 
