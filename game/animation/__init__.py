@@ -1,5 +1,7 @@
 """The body in motion: from the planner's decisions to one pose per character and to the matrices that skin a mesh."""
 
+from game.animation.body_size import BodySize, measure_body
+from game.animation.fitting import Fitting, fit_to
 from game.animation.liveliness import GAZE_AWAY, GAZE_CUSTOMER, GAZE_GOODS, LifeConfig
 from game.animation.performer import MODES, Mode, Performer, PerformerState, PerformSignal
 from game.animation.pose import Pose, interpolate_pose, joint_accelerations, largest_joint_acceleration
@@ -11,6 +13,8 @@ __all__ = [
     "GAZE_CUSTOMER",
     "GAZE_GOODS",
     "MODES",
+    "BodySize",
+    "Fitting",
     "LifeConfig",
     "Mode",
     "PerformSignal",
@@ -21,7 +25,9 @@ __all__ = [
     "SpringChain",
     "SpringCollider",
     "SpringState",
+    "fit_to",
     "interpolate_pose",
     "joint_accelerations",
     "largest_joint_acceleration",
+    "measure_body",
 ]

@@ -26,7 +26,8 @@ PIECE = 128
 
 
 def crowd_matrices(rig: Rig, pose: Pose) -> Floats:
-    """(n, K, 4, 4) skin matrices, springs at rest; the same as rig.skin_matrices(rig.joint_matrices(pose))."""
+    """(n, K, 4, 4) skin matrices of poses fitted to the rig (rig.fit), springs at rest; the same as
+    rig.skin_matrices(rig.joint_matrices(pose)) of the poses before the fit."""
     n, columns = len(pose), len(rig.skin_joint)
     plan = _plan(rig)
     result = np.empty((n, columns, 16), dtype=np.float32)

@@ -79,12 +79,17 @@ for _array in (FIGURE, BONES, BONE_LENGTHS, UPPER, LOWER, SHOULDERS, ENDS, HINGE
     _array.setflags(write=False)
 
 
-def figure_matrices(rotation: Floats, root: Floats) -> tuple[Floats, Floats]:
-    """rotation (n, 41, 4), root (n, 3) -> (n, 15, 4, 4) in model space and the four limbs' ends (n, 4, 3)."""
+def figure_matrices(
+    rotation: Floats, root: Floats, offset: Floats = _OFFSET, end_offset: Floats = _END_OFFSET
+) -> tuple[Floats, Floats]:
+    """rotation (n, 41, 4), root (n, 3) -> (n, 15, 4, 4) in model space and the four limbs' ends (n, 4, 3).
+
+    offset: (15, 3) or (n, 15, 3) rest translations, end_offset: (4, 3) or (n, 4, 3): the reference's unless given.
+    """
     local = bl.affine(rotation.take(FIGURE, axis=1))
-    local[:, :, :3, 3] = _OFFSET
+    local[:, :, :3, 3] = offset
     local[:, 0, :3, 3] = root
     for level, parents in _PLAN:
         local[:, level] = local.take(parents, axis=1) @ local[:, level]
     lower = local.take(LOWER, axis=1)
-    return local, lower[..., :3, 3] + (lower[..., :3, :3] @ _END_OFFSET[..., None])[..., 0]
+    return local, lower[..., :3, 3] + (lower[..., :3, :3] @ end_offset[..., None])[..., 0]

@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
+from game.animation.body_size import BodySize
 from game.animation.crowd import crowd_matrices
+from game.animation.fitting import NEEDED, Fitting, fit_to
 from game.animation.pose import Pose
+from game.animation.rest_pose import t_pose
 from game.animation.springbones import (
     SpringChain,
     SpringCollider,
@@ -23,7 +26,7 @@ from game.animation.springbones import (
 )
 from game.core import quaternion as quat
 from game.core.errors import BadInput
-from game.core.humanoid import REFERENCE
+from game.core.humanoid import FINGERS, REFERENCE
 from game.core.skeleton import Skeleton
 
 __all__ = ["Rig"]
@@ -36,7 +39,13 @@ TWIST_SHARE = 0.5
 """The twist joint in the middle of a forearm takes this share of the hand's twist."""
 MAX_TWIST_RAD = 2.6
 
+TIP_SHARE = 0.65
+"""The outermost joint of a finger bends this much as far as the one before it."""
+
 _SIDES = ("left", "right")
+_TIPS = {f"{s}{f}Distal": f"{s}{f}Intermediate" for s in _SIDES for f in FINGERS} | {
+    f"{s}ThumbDistal": f"{s}ThumbProximal" for s in _SIDES
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +53,11 @@ class Rig:
     """A character's skeleton and skin. Make it with from_arrays.
 
     skeleton: J joints. skin_joint: (K,) joint of every skin column; inverse_bind: (K, 4, 4). driven: (D,) joints
-    that follow a joint of the reference skeleton, source: (D,) which. twist, twist_hand: forearm twist joints and the
-    hands (in REFERENCE) whose twist they share. before, after: (D, 4) constant rotations for a rest pose that is not
-    the identity, None where it is. hips: joint that takes the root's translation.
+    that follow a joint of the reference skeleton, source: (D,) which; beyond 41: the outermost finger joints, which
+    the reference lacks and curl: (C,) joints of the reference share. folds: (bone, missing bone below or above it)
+    pairs: the bone takes both rotations. twist, twist_hand: forearm twist joints and the hands (in REFERENCE) whose
+    twist they share. before, after: (D, 4) constant rotations for a rest pose that is not the identity, None where it
+    is. hips: joint that takes the root's translation. fitting: None for a body of the reference's own proportions.
     """
 
     skeleton: Skeleton
@@ -54,12 +65,14 @@ class Rig:
     inverse_bind: Floats
     driven: NDArray[np.intp]
     source: NDArray[np.intp]
+    curl: NDArray[np.intp]
+    folds: tuple[tuple[int, int, int], ...]
     twist: NDArray[np.intp]
     twist_hand: NDArray[np.intp]
     before: Floats | None
     after: Floats | None
     hips: int
-    hips_scale: float
+    fitting: Fitting | None
     springs: SpringSet
 
     @classmethod
@@ -75,12 +88,14 @@ class Rig:
         bones: Mapping[str, int] | None = None,
         chains: Sequence[SpringChain] = (),
         colliders: Sequence[SpringCollider] = (),
+        size: BodySize | None = None,
     ) -> Rig:
-        """names, parents (J,) parents first, rest_translation (J, 3) local metres, rest_rotation (J, 4) local.
+        """names, parents (J,) parents first, rest_translation (J, 3) local metres, rest_rotation (J, 4) local; Y up,
+        facing +Z, any rest pose.
 
         inverse_bind: (K, 4, 4) of the skin's columns; the rest pose's own where None. skin_joint: (K,) their joints,
-        all in order where None. bones: VRM humanoid bone -> joint, by name where None. Raises BadInput where the
-        arrays do not fit or there are no hips.
+        all in order where None. bones: VRM humanoid bone -> joint, by name where None. size: how the body's parts
+        differ from the reference's. Raises BadInput where the arrays do not fit or there are no hips.
         """
         count = len(names)
         turned = np.tile(quat.IDENTITY, (count, 1)) if rest_rotation is None else np.asarray(rest_rotation)
@@ -89,7 +104,9 @@ class Rig:
         if "hips" not in index:
             raise BadInput("rig", expected="a joint for the bone hips", seen=", ".join(sorted(index))[:60])
         known = [name for name in REFERENCE.names if name in index]
-        driven = np.array([index[name] for name in known], dtype=np.intp)
+        tips = [tip for tip in _TIPS if tip in index and _TIPS[tip] in index]
+        driven = np.array([index[name] for name in (*known, *tips)], dtype=np.intp)
+        source = [REFERENCE.index[name] for name in known] + [len(REFERENCE) + i for i in range(len(tips))]
         twists = [(f"{s}ForearmTwist", f"{s}Hand") for s in _SIDES if f"{s}ForearmTwist" in skeleton.index]
         joint = np.arange(count) if skin_joint is None else np.asarray(skin_joint, dtype=np.intp)
         if joint.size and (joint.min() < 0 or joint.max() >= count):
@@ -97,21 +114,24 @@ class Rig:
         bind = np.linalg.inv(skeleton.rest_model)[joint] if inverse_bind is None else np.asarray(inverse_bind)
         if bind.shape != (len(joint), 4, 4) or not np.isfinite(bind).all():
             raise BadInput("rig", expected=f"({len(joint)}, 4, 4) finite inverse bind matrices", seen=bind.shape)
-        before, after = _rest_turns(skeleton, driven)
-        hips = index["hips"]
-        height = float(skeleton.rest_model[hips, 1, 3])
+        place, world = t_pose(skeleton, index)
+        before, after = _rest_turns(skeleton, driven, world)
+        whole = all(bone in index for bone in NEEDED)
+        fitting = fit_to({bone: place[at] for bone, at in index.items()}, size) if whole else None
         return cls(
             skeleton=skeleton,
             skin_joint=joint,
             inverse_bind=bind.astype(np.float32),
             driven=driven,
-            source=np.array([REFERENCE.index[name] for name in known], dtype=np.intp),
+            source=np.array(source, dtype=np.intp),
+            curl=np.array([REFERENCE.index[_TIPS[tip]] for tip in tips], dtype=np.intp),
+            folds=_folds(index) if whole else (),
             twist=np.array([skeleton.index[t] for t, _ in twists], dtype=np.intp),
             twist_hand=np.array([REFERENCE.index[h] for _, h in twists], dtype=np.intp),
             before=before,
             after=after,
-            hips=hips,
-            hips_scale=height / float(REFERENCE.rest_model[0, 1, 3]) if height > 0 else 1.0,
+            hips=index["hips"],
+            fitting=fitting,
             springs=build_springs(skeleton, tuple(chains), tuple(colliders)),
         )
 
@@ -119,12 +139,23 @@ class Rig:
         """Springs of n characters, which hang where the first pose puts them."""
         return start_springs(self.springs, n)
 
+    def fit(self, pose: Pose) -> Pose:
+        """The pose on this body's proportions; the pose itself where they are the reference's."""
+        return pose if self.fitting is None else self.fitting.fit(pose)
+
     def local_rotations(self, pose: Pose) -> Floats:
-        """(n, J, 4) of every joint; springs at rest."""
+        """(n, J, 4) of every joint in a fitted pose; springs at rest."""
         n = len(pose)
         rotation = np.empty((n, len(self.skeleton), 4), dtype=np.float32)
         rotation[:] = self.skeleton.rest_rotation
-        taken = pose.rotation.take(self.source, axis=1)
+        normal = pose.rotation
+        if self.folds:
+            normal = normal.copy()
+            for bone, first, then in self.folds:
+                normal[:, bone] = bl.multiply(normal[:, first], normal[:, then])
+        if self.curl.size:
+            normal = np.concatenate([normal, _part(normal.take(self.curl, axis=1))], axis=1)
+        taken = normal.take(self.source, axis=1)
         if self.before is not None and self.after is not None:
             taken = bl.multiply(bl.multiply(np.broadcast_to(self.before, taken.shape), taken), self.after)
         rotation[:, self.driven] = taken
@@ -133,15 +164,17 @@ class Rig:
         return rotation
 
     def root_translation(self, pose: Pose) -> Floats:
-        """(n, 3) local translation of the hips joint: the pose's shift from its rest, at this character's size."""
-        shift = (pose.root - REFERENCE.rest_translation[0].astype(np.float32)) * np.float32(self.hips_scale)
+        """(n, 3) local translation of the hips joint in a fitted pose."""
+        rest = REFERENCE.rest_translation[0].astype(np.float32) if self.fitting is None else self.fitting.hips
+        shift = pose.root - rest
         parent = int(self.skeleton.parents[self.hips])
         if parent >= 0:
             shift = shift @ self.skeleton.rest_model[parent, :3, :3].astype(np.float32)
         return np.asarray(self.skeleton.rest_translation[self.hips].astype(np.float32) + shift)
 
     def joint_matrices(self, pose: Pose) -> Floats:
-        """(n, J, 4, 4) model-space joint matrices, springs at rest."""
+        """(n, J, 4, 4) model-space joint matrices of a pose on the reference, springs at rest."""
+        pose = self.fit(pose)
         local = bl.affine(self.local_rotations(pose))
         local[:, :, :3, 3] = self.skeleton.rest_translation
         local[:, self.hips, :3, 3] = self.root_translation(pose)
@@ -156,20 +189,38 @@ class Rig:
     def advance(self, state: SpringState, pose: Pose, dt_s: float) -> tuple[SpringState, Floats]:
         """One tick of the springs -> state and skin matrices (n, K, 4, 4)."""
         if len(pose) >= CROWD and not self.springs.pieces:
-            return state, crowd_matrices(self, pose)
+            return state, crowd_matrices(self, self.fit(pose))
         model = self.joint_matrices(pose)
         state = advance_springs(self.springs, state, model, dt_s)
         return state, self.skin_matrices(model)
 
 
-def _rest_turns(skeleton: Skeleton, driven: NDArray[np.intp]) -> tuple[Floats | None, Floats | None]:
-    """A normalised VRM rotation n becomes conj(W_parent)·n·W_joint, W = the rest pose's rotations in model space."""
-    _, world = skeleton.to_model(skeleton.rest_rotation)
+def _folds(index: Mapping[str, int]) -> tuple[tuple[int, int, int], ...]:
+    """(bone, upper, lower) of REFERENCE for each missing bone: the bone takes the rotations of both."""
+    pairs = (
+        ("chest", "spine", ("spine", "chest")),
+        ("neck", "head", ("neck", "head")),
+        ("leftShoulder", "leftUpperArm", ("leftShoulder", "leftUpperArm")),
+        ("rightShoulder", "rightUpperArm", ("rightShoulder", "rightUpperArm")),
+    )
+    where = REFERENCE.index
+    return tuple((where[into], where[a], where[b]) for gone, into, (a, b) in pairs if gone not in index)
+
+
+def _rest_turns(skeleton: Skeleton, driven: NDArray[np.intp], world: Floats) -> tuple[Floats | None, Floats | None]:
+    """A rotation n of the reference becomes conj(W_parent)·n·W_joint, W = the T-pose's rotations in model space."""
     parent = skeleton.parents[driven]
     above = np.where((parent < 0)[:, None], quat.IDENTITY, world[np.maximum(parent, 0)])
     if np.allclose(np.abs(above[:, 3]), 1.0, atol=1e-6) and np.allclose(np.abs(world[driven, 3]), 1.0, atol=1e-6):
         return None, None
     return quat.conjugate(above).astype(np.float32), world[driven].astype(np.float32)
+
+
+def _part(turn: Floats) -> Floats:
+    """A share of unit rotations (..., 4), for the joints that bend with the ones before them."""
+    share = np.float32(TIP_SHARE) * np.where(turn[..., 3:] < 0.0, -turn, turn)
+    share[..., 3] += np.float32(1.0 - TIP_SHARE)
+    return bl.normalize(share)
 
 
 def _half_twist(hand: Floats) -> Floats:

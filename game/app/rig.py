@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from game.animation import Rig
+from game.animation import BodySize, Rig, fit_to, measure_body
 from game.animation import SpringChain as RigChain
 from game.animation import SpringCollider as RigCollider
 from game.core.errors import BadInput, Where
@@ -30,6 +32,8 @@ def rig_of(vrm: Vrm) -> Rig:
     wanted |= {joint.node for chain in vrm.springs for joint in chain.joints}
     wanted |= {collider.node for collider in vrm.colliders}
     found = skeleton_of(file, wanted)
+    places = {name: file.node_model[node][:3, 3] for name, node in vrm.bones.items()}
+    size = None if fit_to(places) is None else _size(vrm, places)
     return Rig.from_arrays(
         found.skeleton.names,
         found.skeleton.parents,
@@ -40,7 +44,29 @@ def rig_of(vrm: Vrm) -> Rig:
         bones={name: found.joint[node] for name, node in vrm.bones.items()},
         chains=[_chain(chain, found.joint) for chain in vrm.springs if len(chain.joints) > 1],
         colliders=[RigCollider(found.joint[c.node], c.offset, c.radius_m, c.tail) for c in vrm.colliders],
+        size=size,
     )
+
+
+def _size(vrm: Vrm, places: Mapping[str, NDArray[np.float64]]) -> BodySize:
+    """How big head and trunk are, from the finest mesh of the first skin."""
+    file = vrm.gltf
+    joints = np.array(file.skins[0].joints)
+    head = joints == vrm.bones["head"]
+    trunk = np.isin(joints, [vrm.bones[b] for b in ("hips", "spine", "chest", "upperChest") if b in vrm.bones])
+    meshes = [node.mesh for node in file.nodes if node.mesh is not None and node.skin == 0]
+    parts = max(
+        ([p for p in file.meshes[mesh].primitives if "JOINTS_0" in p.attributes] for mesh in meshes),
+        key=lambda primitives: sum(len(p.attributes["POSITION"]) for p in primitives),
+        default=[],
+    )
+    if not parts:
+        return BodySize({})
+    position, joint, weight = (
+        np.concatenate([part.attributes[name] for part in parts]) for name in ("POSITION", "JOINTS_0", "WEIGHTS_0")
+    )
+    owner = joint[np.arange(len(joint)), weight.argmax(axis=1)]
+    return measure_body(position.astype(np.float64), head[owner], trunk[owner], places["hips"], places["head"])
 
 
 def _chain(chain: SpringChain, joint: dict[int, int]) -> RigChain:

@@ -1,0 +1,228 @@
+"""Poses on other bodies: hands and feet keep their contacts, whatever the proportions, axes, rest pose and bones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from game.animation import BodySize, Pose, Rig, fit_to
+from game.core import quaternion as quat
+from game.core.errors import BadInput
+from game.core.humanoid import REFERENCE, TABLE_TOP_M
+from game.core.paths import ASSETS
+from game.formats import read_bvh
+
+REST = {name: REFERENCE.rest_model[i, :3, 3].copy() for i, name in enumerate(REFERENCE.names)}
+PALM = np.array([0.085, 0.0, 0.0])
+
+
+def take(emotion: str, step: int = 7) -> Pose:
+    """Every few frames of a shipped take."""
+    clip = read_bvh(ASSETS / "motion" / "takes" / f"{emotion}.bvh").clip
+    order = [clip.skeleton.index[name] for name in REFERENCE.names]
+    rotation = clip.rotation[::step][:, order].astype(np.float32)
+    n = len(rotation)
+    root = clip.translation[::step, order[0]].astype(np.float32)
+    return Pose(rotation, root, np.zeros((n, 2)), np.zeros(n), np.zeros(n))
+
+
+def tall() -> dict[str, np.ndarray]:
+    """A grown-up: longer legs, arms and trunk, broader, smaller hands."""
+    places = {name: place * np.array([1.35, 1.2, 1.1]) for name, place in REST.items()}
+    for name, place in places.items():
+        if any(word in name for word in ("Thumb", "Index", "Middle", "Ring", "Little")):
+            hand = f"{'left' if name.startswith('left') else 'right'}Hand"
+            places[name] = places[hand] + 0.9 * (REST[name] - REST[hand])
+        if "Leg" in name or "Foot" in name or "Toes" in name:
+            place[1] *= 1.05
+    for name in ("hips", "spine", "chest", "neck", "head"):
+        places[name][1] += 0.03
+    return places
+
+
+def rig_at(
+    places: dict[str, np.ndarray], turn: dict[str, np.ndarray] | None = None, size: BodySize | None = None
+) -> Rig:
+    """A rig whose joints stand at places (model space); turn: model-space rest rotations, the identity where none."""
+    names = [name for name in REFERENCE.names if name in places]
+    above = {}
+    for name in names:
+        at = int(REFERENCE.parents[REFERENCE.index[name]])
+        while at >= 0 and REFERENCE.names[at] not in places:
+            at = int(REFERENCE.parents[at])
+        above[name] = names.index(REFERENCE.names[at]) if at >= 0 else -1
+    world = [quat.IDENTITY if turn is None else turn[name] for name in names]
+    rest, local = [], []
+    for i, name in enumerate(names):
+        parent = above[name]
+        back = quat.conjugate(world[parent]) if parent >= 0 else quat.IDENTITY
+        rest.append(quat.rotate(back, places[name] - (places[names[parent]] if parent >= 0 else 0.0)))
+        local.append(quat.multiply(back, world[i]))
+    return Rig.from_arrays(
+        names, np.array(list(above.values())), np.array(rest), rest_rotation=np.array(local), size=size
+    )
+
+
+def joints(rig: Rig, pose: Pose) -> dict[str, np.ndarray]:
+    """Joint -> (n, 4, 4)."""
+    model = rig.joint_matrices(pose).astype(np.float64)
+    return {name: model[:, i] for i, name in enumerate(rig.skeleton.names)}
+
+
+def palms(found: dict[str, np.ndarray], side: str, share: float = 1.0) -> np.ndarray:
+    hand = found[f"{side}Hand"]
+    return hand[:, :3, 3] + share * (1 if side == "left" else -1) * (hand[:, :3, :3] @ PALM)
+
+
+def test_the_references_own_body_is_left_alone_to_the_last_bit():
+    rig, pose = rig_at(REST), take("joy", 200)
+    assert rig.fitting is None
+    assert rig.fit(pose) is pose
+    assert fit_to(REST, BodySize({})) is not None
+
+
+@pytest.mark.parametrize("emotion", ["anger", "fear", "neutral"])
+def test_feet_stay_planted_and_hands_stay_on_the_table(emotion: str):
+    """The bounds are what an eye at the customer's place sees: a few millimetres."""
+    pose = take(emotion)
+    here, there = joints(rig_at(REST), pose), joints(rig_at(tall()), pose)
+    for side in ("left", "right"):
+        foot = f"{side}Foot"
+        planted = np.abs(here[foot][:, :3, 3] - REST[foot]).max(axis=1) < 1e-4
+        assert planted.any()
+        np.testing.assert_allclose(
+            there[foot][planted, :3, 3], np.broadcast_to(tall()[foot], (planted.sum(), 3)), atol=2e-3
+        )
+        palm = palms(here, side)
+        low = (palm[:, 1] < TABLE_TOP_M + 0.055) & (palm[:, 2] > 0.17) & (palm[:, 2] < 0.7)
+        apart = np.linalg.norm(palm - palms(here, "right" if side == "left" else "left"), axis=-1) > 0.34
+        chosen = low & apart
+        assert chosen.sum() >= 15
+        mine = palms(there, side, 0.9)[chosen]
+        assert np.abs(mine - palm[chosen])[:, [0, 2]].max() < 0.03
+        assert np.abs(mine - palm[chosen])[:, 1].max() < 0.012
+
+
+def test_a_hand_on_the_head_is_at_the_same_place_of_a_bigger_head():
+    size = BodySize({"head": (1.3, 1.4, 1.2)})
+    fitting = fit_to(REST, size)
+    assert fitting is not None
+    pose = take("disgust", 3)
+    here = joints(rig_at(REST), pose)
+    there = joints(rig_at(REST, size=size), pose)
+    centre, radius = fitting.centre[:, 3, 0].astype(float), fitting.radius[:, 3, 0].astype(float)
+    seen = 0
+    for side in ("left", "right"):
+        local = [
+            (np.einsum("nji,nj->ni", body["head"][:, :3, :3], palms(body, side) - body["head"][:, :3, 3]) - c) / r
+            for body, c, r in ((here, centre[0], radius[0]), (there, centre[1], radius[1]))
+        ]
+        other = "right" if side == "left" else "left"
+        apart = np.linalg.norm(palms(here, side) - palms(here, other), axis=-1) > 0.34
+        near = (np.linalg.norm(local[0], axis=-1) < 1.42) & apart
+        seen += int(near.sum())
+        # On the skin, not in it and not beside it (the chest may have a little say).
+        difference = np.linalg.norm(local[1][near], axis=-1) - np.linalg.norm(local[0][near], axis=-1)
+        assert near.sum() == 0 or np.abs(difference).max() < 0.12
+    assert seen > 5
+
+
+def test_clasped_hands_stay_clasped_on_broad_shoulders():
+    broad = {name: place * np.array([1.5, 1.0, 1.0]) for name, place in REST.items()}
+    pose = take("fear")
+    here, there = joints(rig_at(REST), pose), joints(rig_at(broad), pose)
+    rig = rig_at(broad)
+    assert rig.fitting is not None
+    way = palms(here, "left") - palms(here, "right")
+    close = np.linalg.norm(way, axis=-1) < 0.14
+    assert close.sum() > 20
+    share = rig.fitting.hand
+    mine = palms(there, "left", share) - palms(there, "right", share)
+    np.testing.assert_allclose(mine[close], share * way[close], atol=0.01)
+
+
+def test_axes_of_the_joints_do_not_matter():
+    rng = np.random.default_rng(5)
+    turn = {name: quat.exp(rng.normal(size=3)) for name in REFERENCE.names}
+    pose = take("joy", 50)
+    plain, turned = joints(rig_at(tall()), pose), joints(rig_at(tall(), turn), pose)
+    for name in REFERENCE.names:
+        np.testing.assert_allclose(turned[name][:, :3, 3], plain[name][:, :3, 3], atol=2e-5)
+        back = turned[name][:, :3, :3] @ quat.to_matrix(quat.conjugate(turn[name]))
+        np.testing.assert_allclose(back, plain[name][:, :3, :3], atol=2e-5)
+
+
+def test_an_a_pose_at_rest_moves_like_a_t_pose():
+    places, turn = dict(tall()), dict.fromkeys(REFERENCE.names, quat.IDENTITY)
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        down = quat.from_axis_angle([0.0, 0.0, 1.0], sign * np.deg2rad(45.0))
+        shoulder = places[f"{side}UpperArm"].copy()
+        for name in REFERENCE.names:
+            if name.startswith(side) and not any(w in name for w in ("Shoulder", "Leg", "Foot", "Toes")):
+                places[name] = shoulder + quat.rotate(down, places[name] - shoulder)
+                turn[name] = down
+    pose = take("joy", 50)
+    plain, sloped = joints(rig_at(tall()), pose), joints(rig_at(places, turn), pose)
+    for name in REFERENCE.names:
+        # The arms of the reference are not quite in line with ±X, so neither is what they are set to.
+        np.testing.assert_allclose(sloped[name][:, :3, 3], plain[name][:, :3, 3], atol=2e-3)
+
+
+def test_missing_bones_are_made_up_by_their_neighbours():
+    few = {k: v for k, v in tall().items() if k not in ("chest", "neck", "leftShoulder", "rightShoulder")}
+    few = {k: v for k, v in few.items() if not any(w in k for w in ("Toes", "Thumb", "Ring", "Little"))}
+    pose = take("anger", 50)
+    whole, found = joints(rig_at(tall()), pose), joints(rig_at(few), pose)
+    np.testing.assert_allclose(found["head"][:, :3, :3], whole["head"][:, :3, :3], atol=2e-5)
+    np.testing.assert_allclose(found["spine"][:, :3, :3], whole["chest"][:, :3, :3], atol=2e-5)
+    for side in ("left", "right"):
+        np.testing.assert_allclose(found[f"{side}Hand"][:, :3, :3], whole[f"{side}Hand"][:, :3, :3], atol=2e-5)
+        np.testing.assert_allclose(found[f"{side}Foot"][:, :3, 3], whole[f"{side}Foot"][:, :3, 3], atol=2e-3)
+
+
+def test_outer_finger_joints_curl_with_the_fist():
+    places = tall()
+    names = list(REFERENCE.names)
+    rig = rig_at(places)
+    parents = [int(p) for p in rig.skeleton.parents]
+    rest = list(rig.skeleton.rest_translation)
+    names.append("leftIndexDistal")
+    parents.append(names.index("leftIndexIntermediate"))
+    rest.append(np.array([0.02, 0.0, 0.0]))
+    rig = Rig.from_arrays(names, np.array(parents), np.array(rest))
+    pose = take("joy", 500)
+    bend = quat.from_axis_angle([0.0, 0.0, 1.0], -np.deg2rad(80.0)).astype(np.float32)
+    pose.rotation[:, REFERENCE.index["leftIndexIntermediate"]] = bend
+    local = rig.local_rotations(rig.fit(pose))[0, -1]
+    angle = np.rad2deg(2.0 * np.arctan2(-local[2], local[3]))
+    assert 35.0 < angle < 70.0
+
+
+def test_many_characters_are_fitted_like_each_alone():
+    fitting = fit_to(tall())
+    assert fitting is not None
+    pose = take("disgust", 300)
+    together = fitting.fit(pose)
+    for i in range(len(pose)):
+        part = Pose(*(getattr(pose, f)[i : i + 1] for f in ("rotation", "root", "gaze", "blink", "breath")))
+        alone = fitting.fit(part)
+        np.testing.assert_allclose(together.root[i], alone.root[0], atol=1e-6)
+        same = np.abs((together.rotation[i] * alone.rotation[0]).sum(-1))
+        np.testing.assert_allclose(same, 1.0, atol=1e-5)
+
+
+def test_nothing_jumps_between_frames():
+    """A smooth movement stays smooth: no frame's wrist goes further than in proportion to the reference's."""
+    pose = take("surprise", 1)
+    here, there = joints(rig_at(REST), pose), joints(rig_at(tall()), pose)
+    for side in ("left", "right"):
+        step = [np.linalg.norm(np.diff(palms(b, side), axis=0), axis=-1) for b in (here, there)]
+        assert step[1].max() < 1.9 * step[0].max()
+        second = [np.linalg.norm(np.diff(palms(b, side), n=2, axis=0), axis=-1) for b in (here, there)]
+        assert second[1].max() < 2.2 * second[0].max()
+
+
+def test_needed_bones_are_named():
+    few = {k: v for k, v in REST.items() if k not in ("leftFoot", "head")}
+    with pytest.raises(BadInput, match="no head, leftFoot"):
+        fit_to(few)
