@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 from game.app.talk import TalkAssets, TalkState, start_talk
-from game.story import Memory, memory_of
+from game.story import Memory, afternoon_of, memory_of
 
 __all__ = ["PURSE", "Afternoon", "Bought", "finish_talk", "visit_stall"]
 
@@ -33,6 +34,8 @@ class Afternoon:
     failed_visits: int = 0
     bought: tuple[Bought, ...] = ()
     memory: Memory | None = None
+    shared: Mapping[str, float | str | bool] = field(default_factory=dict)
+    """Script variables of scope ``afternoon``, shared by all stalls."""
 
     @property
     def owned(self) -> frozenset[str]:
@@ -50,6 +53,7 @@ def visit_stall(assets: TalkAssets, afternoon: Afternoon, item: str) -> TalkStat
         purse=afternoon.purse,
         memory=afternoon.memory,
         failed_visits=afternoon.failed_visits,
+        shared=afternoon.shared,
     )
 
 
@@ -65,4 +69,5 @@ def finish_talk(assets: TalkAssets, afternoon: Afternoon, talk: TalkState) -> Af
         failed_visits=afternoon.failed_visits + (0 if talk.deal_price else 1),
         bought=bought,
         memory=memory_of(assets.script, talk.story),
+        shared={**afternoon.shared, **afternoon_of(assets.script, talk.story)},
     )

@@ -154,6 +154,7 @@ def _afternoon_to_dict(afternoon: Afternoon) -> dict[str, Any]:
         "failed_visits": afternoon.failed_visits,
         "bought": [_plain(b) for b in afternoon.bought],
         "memory": None if afternoon.memory is None else afternoon.memory.to_dict(),
+        "shared": dict(afternoon.shared),
     }
 
 
@@ -176,7 +177,25 @@ def _afternoon_from(reader: _Reader) -> Afternoon:
         memory=None
         if memory.data is None
         else Memory.from_dict(memory.data, Where(memory.path, pointer=memory.pointer)),
+        shared=_shared_from(reader),
     )
+
+
+def _shared_from(reader: _Reader) -> dict[str, float | str | bool]:
+    """Variables by name: a number, a short text, true or false. Saves of before there were any have none."""
+    if not isinstance(reader.data, dict) or "shared" not in reader.data:
+        return {}
+    found = reader.at("shared")
+    if not isinstance(found.data, dict) or len(found.data) > 1000:
+        raise found.fail("a mapping of at most 1000", type(found.data).__name__)
+    out: dict[str, float | str | bool] = {}
+    for name in found.data:
+        value = found.at(name)
+        if isinstance(value.data, bool):
+            out[name] = value.data
+        else:
+            out[name] = value.text() if isinstance(value.data, str) else value.number()
+    return out
 
 
 def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:

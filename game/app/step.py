@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import Performer, PerformSignal
-from game.app.talk import TalkAssets, TalkState, choose
+from game.app.talk import Choice, TalkAssets, TalkState, choose
 from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Mark, Speech, World
 from game.core.emotion_space import EMOTIONS, SIX, with_neutral
 from game.core.springs import damp
@@ -42,6 +42,8 @@ BURST_GAIN = 0.45
 """… by this share of the felt emotion on top, and leaves a residue in the posture."""
 AFTER_LINE_S = 0.35
 """A breath after each line before the next may begin by itself."""
+NAMED_GESTURE_S = 0.4
+"""When the stroke of a gesture that the script names falls, seconds into its line: on the first words."""
 PRESENT = 0.15
 """A gesture that less than this of the felt emotion knows does not hold a line up and competes with no beat."""
 CUSTOMER_GAZE = np.array([0.0, 1.16, 3.0])
@@ -73,11 +75,20 @@ def new_world(assets: StepAssets, seed: int, *, language: str = "en", text_speed
 
 # --- stages: each (assets, world, intent) -> world ---------------------------------------------------------------
 def story_stage(assets: StepAssets, world: World, intent: Intent) -> World:
-    """The player's choice runs through story, appraisal and market and comes back as lines."""
-    if intent.choice is None or world.talk is None or not world.waiting:
+    """The player's choice, or that of a timer that ran out, goes through story, appraisal and market to lines."""
+    if world.talk is None or not world.waiting:
         return world
-    said = world.talk.beat.choice(intent.choice.id)
-    talk = choose(assets.talk, world.talk, intent.choice)
+    choice = intent.choice
+    if choice is None:
+        left = world.time_left
+        if left is None:
+            return world
+        if left > 0.0:
+            return replace(world, waited=world.waited + 1)
+        assert world.talk.beat.timer is not None
+        choice = Choice(world.talk.beat.timer.choice)
+    said = world.talk.beat.choice(choice.id)
+    talk = choose(assets.talk, world.talk, choice)
     record = dict(talk.record)
     mark = Mark(
         round=len(world.marks),
@@ -88,7 +99,7 @@ def story_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         text_en=said.en,
         text_ja=said.ja,
     )
-    return replace(world, talk=talk, queue=talk.beat.lines, marks=(*world.marks, mark))
+    return replace(world, talk=talk, queue=talk.beat.lines, marks=(*world.marks, mark), waited=0)
 
 
 def speech_stage(assets: StepAssets, world: World, intent: Intent) -> World:
@@ -132,18 +143,23 @@ def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
     timed = TimedText(line.text(world.language), world.language, speed)
     cues, visemes, start_s = None, None, world.time_s
     if line.speaker == "shopkeeper":
-        cues, start_s = _cues(assets, world, timed)
+        cues, start_s = _cues(assets, world, timed, line.gesture)
         if assets.face is not None:
             visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
     return Speech(line, timed, start_s, cues, visemes, hurried=factor is None)
 
 
-def _cues(assets: StepAssets, world: World, timed: TimedText) -> tuple[GestureCues, float]:
-    """What the line's words call up, and when it begins: hands set out before the voice (preparation)."""
+def _cues(assets: StepAssets, world: World, timed: TimedText, named: str | None = None) -> tuple[GestureCues, float]:
+    """What the line's words call up, and when it begins: hands set out before the voice (preparation).
+
+    named: a gesture that the script asks for by name; it falls on the line's first words.
+    """
     library, config = assets.planner.library, assets.planner.config
     emotion = body_emotion(assets, world)
     shown = library.exists[library.gestures] @ emotion > PRESENT
     cues = GestureCues.from_line(library, timed.text, timed.char_s, timed.language, shown=shown, stress=config.stress)
+    if named is not None:
+        cues = cues.adding(library, named, min(NAMED_GESTURE_S, timed.length_s))
     lead_in_s = cues.preparation_s(library.stroke_lead_s(emotion[None, :])[0], shown)
     start_s = world.time_s + min(lead_in_s, config.lead_in_s)
     return cues.later(start_s), start_s

@@ -7,6 +7,7 @@ keeps no clock: a round is a round however long the player thinks. ``game.app.st
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -131,13 +132,23 @@ def talk_env(state: TalkState, assets: TalkAssets, **now: Any) -> dict[str, floa
 
 
 def start_talk(
-    assets: TalkAssets, item: str, seed: int, *, purse: int, memory: Memory | None = None, failed_visits: int = 0
+    assets: TalkAssets,
+    item: str,
+    seed: int,
+    *,
+    purse: int,
+    memory: Memory | None = None,
+    failed_visits: int = 0,
+    shared: Mapping[str, float | str | bool] | None = None,
 ) -> TalkState:
-    """Walk up to the stall for one item. Mood, lowest price and patience are drawn anew on every visit."""
+    """Walk up to the stall for one item. Mood, lowest price and patience are drawn anew on every visit.
+
+    shared: the script variables of scope ``afternoon``, as earlier talks at any stall left them.
+    """
     if item not in assets.script.items:
         raise BadInput("item", expected=" | ".join(assets.script.items), seen=item)
     list_price = assets.script.items[item].list_price
-    story = begin(assets.script, item, seed, memory=memory)
+    story = begin(assets.script, item, seed, memory=memory, afternoon=shared)
     feeling = start_feeling(assets.feelings, assets.person, _rng(seed, "mood", 0))
     bargain = start_bargain(assets.market, assets.person.patience, _rng(seed, "mark", 0), failed_visits=failed_visits)
     visit = 1 if memory is None else memory.visits + 1

@@ -83,7 +83,8 @@ class World:
     """Everything that changes while the game runs; ``step`` makes the next one from it.
 
     tick: fixed steps done. felt, shown: (6,) and (7,) as they stand in the body and on the face now, following
-    ``felt_target`` and ``shown_target``. burst_s: world time at which the present reaction peaks.
+    ``felt_target`` and ``shown_target``. burst_s: world time at which the present reaction peaks. timers: factor on
+    the time that timed choices give, 0 for none; waited: ticks for which the present choice has stood.
     """
 
     seed: int
@@ -101,6 +102,8 @@ class World:
     felt_target: Floats = field(default_factory=lambda: np.zeros(6))
     shown_target: Floats = field(default_factory=lambda: with_neutral(np.zeros(6)))
     burst_s: float = -1e9
+    timers: float = 0.0
+    waited: int = 0
     marks: tuple[Mark, ...] = ()
 
     @property
@@ -112,6 +115,12 @@ class World:
     def waiting(self) -> bool:
         """Whether the player may choose: a talk goes on and nobody is speaking."""
         return self.talk is not None and not self.talk.ended and self.speech is None and not self.queue
+
+    @property
+    def time_left(self) -> float | None:
+        """Share of the time left for a timed choice, in [0, 1]; None where there is no hurry."""
+        timer = self.talk.beat.timer if self.waiting and self.timers > 0 and self.talk is not None else None
+        return None if timer is None else max(1.0 - self.waited * TICK_S / (timer.seconds * self.timers), 0.0)
 
     @property
     def over(self) -> bool:
@@ -130,6 +139,7 @@ def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
         talk=talk,
         speech=None,
         queue=talk.beat.lines,
+        waited=0,
         backlog=(),
         felt_target=felt,
         shown_target=shown,

@@ -102,6 +102,15 @@ class GestureCues:
         """The same cues on a clock that is ahead by so many seconds."""
         return GestureCues(self.gesture, self.time_s + seconds, self.count)
 
+    def adding(self, library: UnitLibrary, name: str, time_s: float) -> GestureCues:
+        """These cues and one more gesture by its unit's name; unchanged where the library has no such gesture."""
+        names = [library.units[unit].name for unit in library.gestures]
+        if name not in names:
+            return self
+        at = int(np.searchsorted(self.time_s, time_s))
+        gesture = np.insert(self.gesture, at, names.index(name))
+        return GestureCues(gesture, np.insert(self.time_s, at, time_s), self.count)
+
     def preparation_s(self, lead_s: Floats, shown: NDArray[np.bool_]) -> float:
         """How long before the line its first gestures have to start, seconds, at least 0.
 

@@ -1,13 +1,14 @@
 """Dialogue: scripts in YAML, their expression language, their checks, and the state of a talk."""
 
 from game.story.acts import ActTable, load_acts
-from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus
+from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Timer
 from game.story.engine import advance, resume
 from game.story.findings import CODES, Finding, Findings
 from game.story.lint import lint_files
 from game.story.model import Item, NodeDef, Person, Script
-from game.story.reader import load_person, load_script, shipped_stalls
-from game.story.state import Memory, StoryState, begin, memory_of, restore, save
+from game.story.reader import load_script, shipped_stalls
+from game.story.state import Memory, StoryState, afternoon_of, begin, memory_of, restore, save
+from game.story.surroundings import load_person
 from game.story.text import Text, wrap
 from game.story.timing import TimedText, TimedWord
 from game.story.vocabulary import ACTS, ENV, OUTCOMES, STANDING_ACTS
@@ -38,7 +39,9 @@ __all__ = [
     "Text",
     "TimedText",
     "TimedWord",
+    "Timer",
     "advance",
+    "afternoon_of",
     "begin",
     "lint_files",
     "load_acts",

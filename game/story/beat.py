@@ -9,7 +9,7 @@ from game.core.errors import BadInput
 from game.story.model import Speaker
 from game.story.text import Text
 
-__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus"]
+__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "Timer"]
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ Event = Start | Chose | Outcome
 
 @dataclass(frozen=True)
 class Spoken:
-    """One line to speak, filled in, in both languages. ``face``: a named expression of ``Script.faces``."""
+    """One line to speak, filled in, in both languages. face: a named expression; gesture: a named gesture with it."""
 
     id: str
     speaker: Speaker
@@ -45,6 +45,7 @@ class Spoken:
     ja: str
     face: str | None = None
     tone: str | None = None
+    gesture: str | None = None
 
     def text(self, language: str) -> str:
         """The words in ``en`` or ``ja``."""
@@ -77,6 +78,14 @@ class Stimulus:
 
 
 @dataclass(frozen=True)
+class Timer:
+    """A timed choice, where the player wants such: after ``seconds`` of waiting ``choice`` is taken."""
+
+    seconds: float
+    choice: str
+
+
+@dataclass(frozen=True)
 class Beat:
     """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
 
@@ -85,6 +94,7 @@ class Beat:
     choices: tuple[Choice, ...]
     stimuli: tuple[Stimulus, ...]
     ended: str | None
+    timer: Timer | None = None
 
     def choice(self, choice_id: str) -> Choice:
         """The offered choice with an id. Raises BadInput where it is not offered."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from game.core.errors import BadInput
-from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus
+from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Timer
 from game.story.chance import pick_weighted, uniform
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
+from game.story.forms import PERSON_SLOTS, number_text, person_word
 from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script
 from game.story.state import StoryState
 from game.story.text import Text, fill
@@ -85,6 +86,7 @@ class _Run:
         self.visits = dict(state.visits)
         self.said = set(state.said)
         self.chosen = set(state.chosen)
+        self.heard = dict(state.heard)
         self.seen = {*state.earlier, *state.said, *state.chosen, *state.visits}
         self.names: dict[str, Value] = {**environment(env), **state.variables}
         self.names["item"] = state.item
@@ -208,14 +210,19 @@ class _Run:
             return
         # On a later visit, what was said on an earlier one comes last.
         new = [line for line in fresh if line.id not in self.state.earlier] or fresh
-        chosen = new[pick_weighted([line.weight for line in new], self.chance())] if len(new) > 1 else new[0]
-        self.say_line(chosen)
+        if say.order == "shuffled":
+            least = min(self.heard.get(line.id, 0) for line in new)
+            new = [line for line in new if self.heard.get(line.id, 0) == least]
+        pick = len(new) > 1 and say.order != "listed"
+        self.say_line(new[pick_weighted([line.weight for line in new], self.chance())] if pick else new[0])
 
     def say_line(self, line: LineDef) -> None:
         if line.id in self.said and not line.again:
             return
         self.said.add(line.id)
         self.seen.add(line.id)
+        if line.again:
+            self.heard[line.id] = self.heard.get(line.id, 0) + 1
         self.lines.append(self.spoken(line))
         if line.feel:
             self.stimuli.append(Stimulus(line.feel, line.id))
@@ -229,13 +236,16 @@ class _Run:
 
     def spoken(self, line: LineDef) -> Spoken:
         text = self.filled(line.text)
-        return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone)
+        return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
         if not text.names or text.names == {keep}:
             return text
 
         def value(name: str, language: str) -> str | None:
+            if name in PERSON_SLOTS:
+                person = self.script.person
+                return person_word(name, person.name.get(language), person.pronoun, language)
             if name == keep or name not in self.names:
                 return None
             if name == "item":
@@ -244,10 +254,20 @@ class _Run:
             if name in ENV and ENV[name].money and not isinstance(found, str):
                 return self.script.currency.text(found).get(language)
             if isinstance(found, float):
-                return f"{found:g}"
+                return number_text(found)
             return str(found).lower() if isinstance(found, bool) else found
 
-        return Text(fill(text.en, lambda name: value(name, "en")), fill(text.ja, lambda name: value(name, "ja")))
+        return Text(
+            fill(text.en, lambda name: value(name, "en"), self.number_of, "en"),
+            fill(text.ja, lambda name: value(name, "ja"), self.number_of, "ja"),
+        )
+
+    def number_of(self, name: str) -> float | None:
+        """What decides a plural: a number, or how many a pronoun speaks of."""
+        if name == "they":
+            return 2.0 if self.script.person.pronoun == "they" else 1.0
+        found = self.names.get(name)
+        return found if isinstance(found, float) else None
 
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ChoiceDef) -> bool:
@@ -317,9 +337,17 @@ class _Run:
             visits=self.visits,
             said=frozenset(self.said),
             chosen=frozenset(self.chosen),
+            heard=self.heard,
             variables={name: self.names[name] for name in self.script.variables},
             offered=tuple((choice.id, line.id) for choice, line in offered),
             last_lines=tuple(line.id for line in self.lines),
         )
         choices = tuple(self._choice(choice, line) for choice, line in offered)
-        return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended)
+        return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended, self.timer(choices))
+
+    def timer(self, choices: Sequence[Choice]) -> Timer | None:
+        """The timer of the place where the talk waits, if its default can be taken."""
+        timer = self.script.nodes[self.node].timer if self.ended is None and self.node else None
+        if timer is None or not any(choice.id == timer.default and choice.available for choice in choices):
+            return None
+        return Timer(timer.seconds, timer.default)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from game.core.errors import BadInput, Where
@@ -28,6 +29,9 @@ CODES: dict[str, str] = {
     "E_NO_EXIT": "the standing choices do not always let the player leave",
     "E_UNKNOWN_ACT": "an act the rules do not know",
     "E_UNKNOWN_EMOTION": "an emotion that does not exist",
+    "E_INCLUDE": "an included file that cannot be used",
+    "E_UNKNOWN_GESTURE": "a named gesture that does not exist",
+    "E_BAD_FORMS": "forms of a plural or counter that cannot be used",
     "E_UNKNOWN_FACE": "a named expression that does not exist",
     "E_UNKNOWN_ITEM": "a thing that is not on this table",
     "E_UNKNOWN_NAME": "a name that a condition, effect or line cannot use",
@@ -42,6 +46,7 @@ CODES: dict[str, str] = {
     "E_EXPR_SIZE": "an expression that is too long or nested too deeply",
     "W_YAML_BOOLEAN": "an unquoted yes, no, on or off, which other YAML tools read as true or false",
     "W_MISSING_TRANSLATION": "a line without English or Japanese",
+    "W_NO_ABOUT": "a thing on the table without a description",
     "W_SLOT_MISMATCH": "names in braces that only one language has",
     "W_LONG_LINE": "more text than the box holds",
     "W_UNREACHABLE": "a node that nothing leads to",
@@ -55,6 +60,7 @@ CODES: dict[str, str] = {
     "W_REPEATED_TEXT": "the same words under two ids: they could be spoken twice in a talk",
     "W_FALLS_THROUGH": "a list of ways on whose last one has a condition",
     "W_SILENT_REACTION": "a reaction with nothing to say for some way the line can land",
+    "I_NOT_INCLUDED": "a part that no stall beside it includes",
     "I_ALWAYS": "a condition that always holds",
 }
 
@@ -98,6 +104,8 @@ class Findings:
 
     def __init__(self) -> None:
         self.all: list[Finding] = []
+        self.files: set[Path] = set()
+        """Included files that were read on the way."""
         self._known: set[tuple[str, str, str]] = set()
 
     def add(self, code: str, where: Where, message: str, hint: str | None = None) -> None:

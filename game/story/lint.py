@@ -10,13 +10,17 @@ from game.formats.files import decode_utf8, read_bytes
 from game.formats.yaml_source import load_yaml
 from game.story.acts import acts_from
 from game.story.findings import Finding, Findings
+from game.story.grammar import PART
 from game.story.quality import check_quality
-from game.story.reader import load_faces, load_person, read_script
+from game.story.reader import is_stall, read_script
 from game.story.source import Source
+from game.story.surroundings import load_faces, load_person
 
 __all__ = ["dialogue_files", "lint_files", "lint_text"]
 
 _MAX_BYTES = 2_000_000
+# A part stands beside its stalls or in a folder below them.
+_STALLS_ABOVE = 3
 
 
 def dialogue_files(paths: Iterable[Path]) -> list[Path]:
@@ -35,24 +39,62 @@ def dialogue_files(paths: Iterable[Path]) -> list[Path]:
 def lint_files(paths: Iterable[Path]) -> list[Finding]:
     """Findings of all dialogue files at and below some paths, by file and place."""
     findings = Findings()
+    parts: list[tuple[Path, str]] = []
     for path in dialogue_files(paths):
         try:
             text = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file"), path)
         except BadInput as error:
             findings.take("E_YAML", error)
+            continue
+        if _kind(text) == "part":
+            parts.append((path, text))
         else:
             lint_text(path, text, findings)
+    known = {path.resolve() for path in findings.files}
+    for path, text in parts:
+        if path.resolve() not in known:
+            _lint_part(path, text, findings)
     return findings.ordered()
+
+
+def _kind(text: str) -> str:
+    """What a file is, told by the keys that begin its rows."""
+    keys = {row.partition(":")[0] for row in text.split("\n") if row[:1].isalpha()}
+    for key, kind in (("stall", "stall"), ("part", "part"), ("nodes", "stall")):
+        if key in keys:
+            return kind
+    return next((key for key in ("person", "faces", "acts") if key in keys), "stall")
+
+
+def _lint_part(path: Path, text: str, findings: Findings) -> None:
+    """A part by itself: its findings are those of the stalls that include it."""
+    found = False
+    for folder in path.absolute().parents[:_STALLS_ABOVE]:
+        for stall in sorted(folder.glob("*.yaml")):
+            of_stall = Findings()
+            if is_stall(stall):
+                lint_text(stall, decode_utf8(stall.read_bytes(), stall), of_stall)
+            if any(file.resolve() == path.resolve() for file in of_stall.files):
+                found = True
+                for finding in of_stall.all:
+                    if Path(finding.where.path).resolve() == path.resolve():
+                        where = Where(path, finding.where.line, finding.where.col)
+                        findings.add(finding.code, where, finding.message, finding.hint)
+    if not found:
+        source = Source(path, text, findings)
+        if source.root is not None:
+            source.mapping(source.root, PART)
+            findings.add("I_NOT_INCLUDED", source.root.where, "no stall includes this part; its lines are not checked")
 
 
 def lint_text(path: Path, text: str, findings: Findings) -> None:
     """Check one file's text; ``path`` tells which kind of file it is and where the others stand."""
-    keys = {row.partition(":")[0] for row in text.split("\n") if row[:1].isalpha()}
-    if "person" in keys and "nodes" not in keys:
+    kind = _kind(text)
+    if kind == "person":
         _check(path, text, findings, lambda: load_person(path))
-    elif "faces" in keys and "nodes" not in keys:
+    elif kind == "faces":
         _check(path, text, findings, lambda: load_faces(path))
-    elif "acts" in keys and "nodes" not in keys:
+    elif kind == "acts":
         _check(path, text, findings, lambda: _all_temperaments(path))
     else:
         script = read_script(path, findings, text)

@@ -10,7 +10,7 @@ from typing import Literal
 from game.core.errors import Where
 from game.story.acts import ActTable
 from game.story.expressions import Expression, Names
-from game.story.text import Text
+from game.story.text import Pronoun, Text
 from game.story.vocabulary import Type, Value
 
 __all__ = [
@@ -24,10 +24,12 @@ __all__ = [
     "Item",
     "LineDef",
     "NodeDef",
+    "Order",
     "Person",
     "SayDef",
     "Script",
     "Speaker",
+    "TimerDef",
     "Variable",
 ]
 
@@ -36,16 +38,18 @@ HOME = "home"
 
 Speaker = Literal["shopkeeper", "player", "narrator"]
 VariableScope = Literal["talk", "stall", "afternoon"]
+Order = Literal["weighted", "shuffled", "listed"]
 
 
 @dataclass(frozen=True, eq=False)
 class Item:
-    """A thing on the table. ``list_price`` in whole units of the stall's currency."""
+    """A thing on the table. ``list_price`` in whole units of the stall's currency; about: what one sees of it."""
 
     id: str
     name: Text
     list_price: int
     where: Where
+    about: Text | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +61,7 @@ class Person:
     temperament: str
     notes: str
     where: Where
+    pronoun: Pronoun = "they"
 
 
 @dataclass(frozen=True)
@@ -104,6 +109,7 @@ class LineDef:
     condition: Expression | None = None
     when: str | None = None
     face: str | None = None
+    gesture: str | None = None
     tone: str | None = None
     note: str | None = None
     weight: float = 1.0
@@ -113,12 +119,16 @@ class LineDef:
 
 @dataclass(frozen=True, eq=False)
 class SayDef:
-    """A place in a node where one line is said: the only one, or one of ``any`` that fits and was not yet said."""
+    """A place in a node where one line is said: the only one, or one of ``any`` that fits and was not yet said.
+
+    order: weighted, by chance; shuffled, those heard least often first; listed, the first.
+    """
 
     lines: tuple[LineDef, ...]
     where: Where
     condition: Expression | None = None
     when: str | None = None
+    order: Order = "weighted"
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +163,15 @@ class ChoiceDef:
 
 
 @dataclass(frozen=True, eq=False)
+class TimerDef:
+    """A timed choice: after so many seconds the choice ``default`` is taken."""
+
+    seconds: float
+    default: str
+    where: Where
+
+
+@dataclass(frozen=True, eq=False)
 class NodeDef:
     """A place in the talk: lines, then choices to wait at, a way on, or an end."""
 
@@ -168,6 +187,7 @@ class NodeDef:
     end: str | None
     effects: tuple[EffectDef, ...]
     feel: Mapping[str, float]
+    timer: TimerDef | None = None
 
     @property
     def waits(self) -> bool:
@@ -186,10 +206,11 @@ class EndingDef:
 
 @dataclass(frozen=True, eq=False)
 class Script:
-    """One stall's dialogue."""
+    """One stall's dialogue. path: the stall's own file; files: all that its nodes stand in, it first."""
 
     stall: str
     path: str
+    files: tuple[str, ...]
     title: Text
     person: Person
     currency: Currency

@@ -2,94 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 from game.core.emotion_space import EMOTIONS, SIX
 from game.formats.yaml_source import Node
 from game.story.expressions import Expression, ExpressionError, Names, compile_expression
 from game.story.findings import Findings
-from game.story.model import BACK, HOME, Branch, ChoiceDef, Currency, EffectDef, LineDef, SayDef, Speaker, Variable
+from game.story.grammar import BRANCH, CHOICE, GROUP, LINE, NEEDS, ORDERS
+from game.story.model import (
+    BACK,
+    HOME,
+    Branch,
+    ChoiceDef,
+    EffectDef,
+    LineDef,
+    Order,
+    SayDef,
+    Speaker,
+    Variable,
+)
 from game.story.source import Source
-from game.story.text import LANGUAGES, ROW_CHARS, ROWS_PER_BOX, Text, fill, slots, wrap
+from game.story.text import LANGUAGES, ROWS_PER_BOX, Text
 from game.story.vocabulary import ACTS, ENV, STANDING_ACTS, WHEN, Type
+from game.story.wording import Wording
 
 __all__ = ["Parts"]
 
-LINE_KEYS = ("id", "en", "ja", "if", "when", "speaker", "face", "tone", "note", "weight", "again", "feel")
-CHOICE_KEYS = (
-    *("id", "act", "en", "ja", "say", "to", "feel", "set", "if", "needs", "once", "silent", "weight"),
-    *("face", "tone", "note"),
-)
 _CHOICE_ROWS = 2
 _ONCE = {True: "talk", False: "never"}
 
 
 @dataclass
 class Parts:
-    """Reads parts of one script. ``names``: what expressions may mention; ``ids``: where each id was given first."""
+    """Reads parts of one script.
+
+    names: what expressions may mention; gestures: known named gestures, asked for only where a line names one; ids:
+    where each id was given first.
+    """
 
     source: Source
     findings: Findings
+    wording: Wording
     names: Names
     variables: Mapping[str, Variable]
     people: Mapping[str, Speaker]
     faces: Mapping[str, Mapping[str, float]]
+    gestures: Callable[[], Sequence[str]]
     items: Sequence[str]
-    longest_item: Text
-    currency: Currency
     ids: dict[str, Node]
-
-    # --- words -----------------------------------------------------------------------------------------------
-    def text(self, fields: Mapping[str, Node], place: Node, rows: int, *, required: bool = True) -> Text:
-        """``en`` and ``ja`` of a line: present, not too long, with the same names in braces."""
-        words = {}
-        for language in LANGUAGES:
-            node = fields.get(language)
-            value = self.source.text(node)
-            if node is None and required:
-                self.findings.add("W_MISSING_TRANSLATION", place.where, f"no {language!r} text")
-            if node is not None and value is not None:
-                if not value.strip():
-                    self.findings.add("W_MISSING_TRANSLATION", node.where, f"the {language!r} text is empty")
-                self._check_slots(node, value)
-                self._check_length(node, value, language, rows)
-            words[language] = (value or "").strip()
-        text = Text(words["en"], words["ja"])
-        if text.en and text.ja:
-            one_only = {name for name, _ in slots(text.en)} ^ {name for name, _ in slots(text.ja)}
-            if one_only and one_only <= {*ENV, *self.variables}:
-                found = ", ".join(sorted(one_only))
-                self.findings.add("W_SLOT_MISMATCH", fields["ja"].where, f"in one language only: {{{found}}}")
-        return text
-
-    def _check_slots(self, node: Node, value: str) -> None:
-        place = self.source.inside(node)
-        allowed = [name for name, known in ENV.items() if not known.hidden and known.type != "bool"]
-        allowed += [name for name, variable in self.variables.items() if variable.type != "bool"]
-        for name, offset in slots(value):
-            if name in {"{", "}"}:
-                self.findings.add("E_UNKNOWN_NAME", place(offset), f"a lone {name}", "names stand in {braces}")
-            elif name not in allowed:
-                self.findings.add(
-                    "E_UNKNOWN_NAME", place(offset), f"no name {name!r} to fill in", self.findings.hint(name, allowed)
-                )
-
-    def _check_length(self, node: Node, value: str, language: str, rows: int) -> None:
-        def widest(name: str) -> str | None:
-            if name == "item":
-                return self.longest_item.get(language)
-            return self.currency.text(88888).get(language) if name in ENV and ENV[name].money else "88"
-
-        wrapped = wrap(fill(value, widest), language)
-        width = ROW_CHARS[language]
-        if len(wrapped) > rows or any(len(row) > width + (2 if language == "ja" else 0) for row in wrapped):
-            self.findings.add(
-                "W_LONG_LINE",
-                node.where,
-                f"{len(wrapped)} rows of up to {max(map(len, wrapped))} characters in {language!r}",
-                f"at most {rows} rows of {width}",
-            )
 
     # --- expressions -----------------------------------------------------------------------------------------
     def expression(self, node: Node | None, wanted: Type | None) -> Expression | None:
@@ -154,12 +116,13 @@ class Parts:
         out = []
         for item in self.source.items(node):
             if item.kind == "mapping" and "any" in item:
-                fields = self.source.mapping(item, ("any", "if", "when"))
+                fields = self.source.mapping(item, GROUP)
                 lines = [self.line(line) for line in self.source.items(fields.get("any"))]
                 group = tuple(line for line in lines if line is not None)
                 condition, when = self.expression(fields.get("if"), "bool"), self._when(fields.get("when"))
+                order = self.source.one_of(fields.get("order"), ORDERS, "E_BAD_VALUE", "order")
                 if group:
-                    out.append(SayDef(group, item.where, condition, when))
+                    out.append(SayDef(group, item.where, condition, when, cast(Order, order or "weighted")))
                 else:
                     self.findings.add("E_MISSING_KEY", item.where, "any: needs at least one line")
             else:
@@ -170,14 +133,14 @@ class Parts:
 
     def line(self, node: Node, speaker: Speaker = "shopkeeper", rows: int = ROWS_PER_BOX) -> LineDef | None:
         """One line."""
-        fields = self.source.mapping(node, LINE_KEYS, ("id",), "a line")
+        fields = self.source.mapping(node, LINE)
         if not fields:
             return None
         name = self.identifier(fields.get("id"))
-        text = self.text(fields, node, rows)
+        text = self.wording.text(fields, node, rows)
         spoken_by = self.source.one_of(fields.get("speaker"), self.people, "E_BAD_VALUE", "speaker")
         face = self.source.one_of(fields.get("face"), self.faces, "E_UNKNOWN_FACE", "expression")
-        weight = self.source.number(fields.get("weight"), 0.001, 1000.0)
+        weight = self.source.number_of(fields, LINE, "weight")
         line = LineDef(
             id=name or "",
             text=text,
@@ -186,6 +149,7 @@ class Parts:
             condition=self.expression(fields.get("if"), "bool"),
             when=self._when(fields.get("when")),
             face=face,
+            gesture=self._gesture(fields.get("gesture")),
             tone=self.source.text(fields.get("tone")),
             note=self.source.text(fields.get("note")),
             weight=1.0 if weight is None else weight,
@@ -193,6 +157,9 @@ class Parts:
             feel=self.feel(fields.get("feel")),
         )
         return line if name else None
+
+    def _gesture(self, node: Node | None) -> str | None:
+        return None if node is None else self.source.one_of(node, self.gestures(), "E_UNKNOWN_GESTURE", "gesture")
 
     def _when(self, node: Node | None) -> str | None:
         return self.source.one_of(node, WHEN, "E_UNKNOWN_NAME", "`when`")
@@ -205,6 +172,8 @@ class Parts:
         first = self.ids.get(name)
         if first is not None and first is not node:
             place = f"{first.where.line}:{first.where.col}"
+            if first.where.path != node.where.path:
+                place = str(first.where)
             self.findings.add("E_DUPLICATE_ID", node.where, f"the id {name!r} is taken", f"first used at {place}")
             return None
         self.ids[name] = node
@@ -218,14 +187,14 @@ class Parts:
 
     def choice(self, node: Node, acts: Sequence[str]) -> ChoiceDef | None:
         """One choice: either its words, or ``say:`` with several wordings of it."""
-        fields = self.source.mapping(node, CHOICE_KEYS, ("id", "act"), "a choice")
+        fields = self.source.mapping(node, CHOICE)
         if not fields:
             return None
         name = self.identifier(fields.get("id"))
         act = self.source.one_of(fields.get("act"), acts, "E_UNKNOWN_ACT", "act")
         texts = self._wordings(fields, node, name or "")
         needs, reason = self._needs(fields.get("needs"))
-        weight = self.source.number(fields.get("weight"), 0.001, 1000.0)
+        weight = self.source.number_of(fields, CHOICE, "weight")
         choice = ChoiceDef(
             id=name or "",
             act=act or "",
@@ -254,7 +223,7 @@ class Parts:
             if not texts:
                 self.findings.add("E_MISSING_KEY", fields["say"].where, "say: needs at least one wording")
             return texts
-        words = self.text(fields, node, _CHOICE_ROWS)
+        words = self.wording.text(fields, node, _CHOICE_ROWS)
         face = self.source.one_of(fields.get("face"), self.faces, "E_UNKNOWN_FACE", "expression")
         tone, note = self.source.text(fields.get("tone")), self.source.text(fields.get("note"))
         return (LineDef(name, words, node.where, "player", face=face, tone=tone, note=note),)
@@ -262,8 +231,8 @@ class Parts:
     def _needs(self, node: Node | None) -> tuple[Expression | None, Text | None]:
         if node is None:
             return None, None
-        fields = self.source.mapping(node, ("if", "en", "ja"), ("if",), "needs:")
-        return self.expression(fields.get("if"), "bool"), self.text(fields, node, _CHOICE_ROWS)
+        fields = self.source.mapping(node, NEEDS)
+        return self.expression(fields.get("if"), "bool"), self.wording.text(fields, node, _CHOICE_ROWS)
 
     def _once(self, node: Node | None) -> str:
         if node is None:
@@ -286,7 +255,7 @@ class Parts:
         out: list[Branch] = []
         for item in node.as_list():
             if item.kind == "mapping":
-                fields = self.source.mapping(item, ("if", "to"), ("if", "to"), "a way on")
+                fields = self.source.mapping(item, BRANCH)
                 condition, target = self.expression(fields.get("if"), "bool"), self.target(fields.get("to"))
                 if condition is not None and target:
                     out.append(Branch(target, item.where, condition))

@@ -26,7 +26,7 @@ _HIDES_WAYS = frozenset(
 
 def check_quality(script: Script, findings: Findings) -> None:
     """Warnings and remarks about one script."""
-    if not any(finding.code in _HIDES_WAYS for finding in findings.all if finding.where.path == script.path):
+    if not any(finding.code in _HIDES_WAYS for finding in findings.all if finding.where.path in script.files):
         reach = Reach(script)
         _conditions(script, reach, findings)
         _unreached(script, reach, findings)

@@ -3,57 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from itertools import chain
 from pathlib import Path
-from types import MappingProxyType
 from typing import cast
 
-from game.core.emotion_space import SIX
 from game.core.errors import BadInput, Where
 from game.core.paths import DIALOGUE
 from game.formats.files import decode_utf8, read_bytes
-from game.formats.yaml_source import Node, load_yaml
-from game.story.acts import ActTable, load_acts
+from game.formats.yaml_source import Node
 from game.story.checks import check_structure
 from game.story.expressions import Names
 from game.story.findings import Findings
+from game.story.forms import PERSON_SLOTS
+from game.story.grammar import CURRENCY, HEAD, ITEM, NAME, NODE, TIMER, VARIABLES, WORDS
+from game.story.includes import included
 from game.story.model import (
     ChoiceDef,
     Currency,
     EndingDef,
     Item,
     NodeDef,
-    Person,
     Script,
     Speaker,
+    TimerDef,
     Variable,
     VariableScope,
 )
 from game.story.parts import Parts
 from game.story.source import Source
-from game.story.text import Text
+from game.story.surroundings import Surroundings, gesture_names, surroundings
+from game.story.text import ROWS_PER_BOX, Text
 from game.story.vocabulary import ACTS, ENV, OPTIONAL_OUTCOMES, OUTCOMES, Type
+from game.story.wording import Wording
 
-__all__ = ["is_stall", "load_faces", "load_person", "load_script", "read_script", "shipped_stalls"]
+__all__ = ["is_stall", "load_script", "read_script", "shipped_stalls"]
 
-HEAD_KEYS = (
-    *("stall", "title", "person", "currency", "items", "start", "home", "outcomes", "endings", "variables"),
-    *("pools", "standing", "nodes", "notes"),
-)
-HEAD_REQUIRED = ("stall", "title", "person", "items", "start", "home", "outcomes", "endings", "standing", "nodes")
-NODE_KEYS = ("lines", "to", "choices", "pool", "draw", "standing", "call", "end", "set", "feel", "note")
 _TYPES: Mapping[type, Type] = {bool: "bool", int: "number", float: "number", str: "text"}
 _YEN = Currency(Text("¥{n}", "{n}円"))
 _MAX_BYTES = 2_000_000
-
-
-@dataclass(frozen=True)
-class _Surroundings:
-    """What stands beside a script: the folder with people, rules and faces."""
-
-    person: Person
-    acts: ActTable
-    faces: Mapping[str, Mapping[str, float]]
 
 
 def shipped_stalls(folder: Path = DIALOGUE) -> tuple[Path, ...]:
@@ -95,68 +83,30 @@ def read_script(path: Path, findings: Findings, text: str | None = None, *, trap
     source = Source(path, text, findings, traps=traps)
     if source.root is None:
         return None
-    head = source.mapping(source.root, HEAD_KEYS, HEAD_REQUIRED, "a stall")
-    around = _surroundings(head.get("person"), source, path, findings)
+    head = source.mapping(source.root, HEAD)
+    parts = included(path, source, head, findings)
+    around = surroundings(head.get("person"), source, path, findings)
     if around is None or "nodes" not in head or not source.entries(head["nodes"]):
         return None
-    return _Reader(source, findings, head, around).script()
-
-
-def _surroundings(node: Node | None, source: Source, path: Path, findings: Findings) -> _Surroundings | None:
-    folder = path.parent if (path.parent / "people").is_dir() else DIALOGUE
-    name = source.identifier(node)
-    if name is None or node is None:
-        return None
-    try:
-        person = load_person(folder / "people" / f"{name}.yaml")
-        acts = load_acts(folder / "rules.yaml", person.temperament)
-        return _Surroundings(person, acts, load_faces(folder / "faces.yaml"))
-    except BadInput as error:
-        known = [file.stem for file in sorted((folder / "people").glob("*.yaml"))]
-        if name in known:
-            findings.add("E_UNKNOWN_PERSON", node.where, f"{name!r} cannot be used: {error.message}")
-        else:
-            findings.add("E_UNKNOWN_PERSON", node.where, f"no shopkeeper {name!r}", findings.hint(name, known))
-        return None
-
-
-def load_person(path: Path) -> Person:
-    """Read a shopkeeper's file. Raises BadInput with file:line:col."""
-    root = load_yaml(path).only("person", "name", "temperament", "pronouns", "notes", "voice")
-    name = root["name"].only("en", "ja")
-    if root["person"].as_str() != path.stem:
-        raise root["person"].error(expected=f"the file's own name, {path.stem!r}")
-    notes = root.get("notes")
-    return Person(
-        root["person"].as_str(),
-        Text(name["en"].as_str(), name["ja"].as_str()),
-        root["temperament"].as_str(),
-        notes.as_str() if notes else "",
-        root.where,
-    )
-
-
-def load_faces(path: Path) -> dict[str, Mapping[str, float]]:
-    """Read named expressions: name -> nudges on the shown emotions. Raises BadInput with file:line:col."""
-    faces = load_yaml(path).only("faces")["faces"]
-    return {
-        key.as_str(): MappingProxyType({e.as_str(): v.as_float(-1, 1) for e, v in face.only(*SIX).items()})
-        for key, face in faces.items()
-    }
+    return _Reader(source, findings, (head, *parts), around).script()
 
 
 class _Reader:
     """One script being read."""
 
-    def __init__(self, source: Source, findings: Findings, head: Mapping[str, Node], around: _Surroundings) -> None:
+    def __init__(
+        self, source: Source, findings: Findings, heads: Sequence[Mapping[str, Node]], around: Surroundings
+    ) -> None:
         self.source = source
         self.findings = findings
-        self.head = head
+        self.head = heads[0]
+        # The stall's own head, then those of the files it includes.
+        self.heads = heads
         self.around = around
         self.variables = self._variables()
         self.node_keys = self._node_keys()
         self.items = self._items()
-        ids = {name for name, _ in _ids(head)} | set(self.node_keys)
+        ids = {name for head in heads for name, _ in _ids(head)} | set(self.node_keys)
         types: dict[str, Type] = {name: known.type for name, known in ENV.items()}
         types |= {name: variable.type for name, variable in self.variables.items()}
         currency = self._currency()
@@ -164,23 +114,34 @@ class _Reader:
         self.parts = Parts(
             source=source,
             findings=findings,
+            wording=Wording(
+                source, findings, self.variables, [item.name for item in self.items.values()], currency, around.person
+            ),
             names=Names(types, tuple(self.node_keys), frozenset(ids)),
             variables=self.variables,
             people=people,
             faces=around.faces,
+            gestures=gesture_names,
             items=tuple(self.items),
-            longest_item=self._longest_item(),
-            currency=currency,
             ids={name: key for name, (key, _) in self.node_keys.items()},
         )
+        for name, item in self._abouts():
+            self.items[name] = replace(self.items[name], about=self.parts.wording.text(*item, ROWS_PER_BOX))
+
+    def _entries(self, key: str) -> Iterator[tuple[Node, Node]]:
+        """(key, value) of a part of the head, in the stall's own file and then in those it includes."""
+        return chain.from_iterable(self.source.entries(head.get(key)) for head in self.heads)
 
     def script(self) -> Script | None:
         head, parts, source = self.head, self.parts, self.source
         pools = self._pools()
         standing = parts.choices(head.get("standing"))
         endings = self._endings()
-        nodes = {name: self._node(name, key, value, pools, endings) for name, (key, value) in self.node_keys.items()}
-        title = parts.text(source.mapping(head["title"], ("en", "ja")), head["title"], 1) if "title" in head else None
+        nodes = {
+            name: self._node(name, key, value, pools, endings, standing)
+            for name, (key, value) in self.node_keys.items()
+        }
+        title = parts.wording.text(source.mapping(head["title"], WORDS), head["title"], 1) if "title" in head else None
         start, home = self._known_node("start"), self._known_node("home")
         stall = source.identifier(head.get("stall"))
         if title is None or start is None or home is None or stall is None:
@@ -188,9 +149,10 @@ class _Reader:
         script = Script(
             stall=stall,
             path=source.path,
+            files=tuple(source.rows),
             title=title,
             person=self.around.person,
-            currency=parts.currency,
+            currency=parts.wording.currency,
             items=self.items,
             start=start,
             home=home,
@@ -210,15 +172,14 @@ class _Reader:
     # --- the head --------------------------------------------------------------------------------------------
     def _variables(self) -> dict[str, Variable]:
         out: dict[str, Variable] = {}
-        node = self.head.get("variables")
-        scopes = self.source.mapping(node, ("talk", "stall", "afternoon")) if node else {}
-        for scope, group in scopes.items():
+        scopes = [self.source.mapping(head["variables"], VARIABLES) for head in self.heads if "variables" in head]
+        for scope, group in [pair for found in scopes for pair in found.items()]:
             for key, value in self.source.entries(group):
                 name = self.source.identifier(key)
                 if name is None:
                     continue
-                if name in out or name in ENV:
-                    who = "the game" if name in ENV else "another variable"
+                if name in out or name in ENV or name in PERSON_SLOTS:
+                    who = "another variable" if name in out else "the game"
                     self.findings.add("E_DUPLICATE_ID", key.where, f"the name {name!r} is taken by {who}")
                     continue
                 kind = _TYPES.get(type(value.value)) if value.kind == "scalar" else None
@@ -234,9 +195,9 @@ class _Reader:
         out: dict[str, Item] = {}
         for key, value in self.source.entries(self.head.get("items")):
             name = self.source.identifier(key)
-            fields = self.source.mapping(value, ("name", "list_price", "note"), ("name", "list_price"), "an item")
-            price = self.source.whole(fields.get("list_price"), 1, 1_000_000)
-            words = self.source.mapping(fields["name"], ("en", "ja"), ("en", "ja")) if "name" in fields else {}
+            fields = self.source.mapping(value, ITEM)
+            price = self.source.whole_of(fields, ITEM, "list_price")
+            words = self.source.mapping(fields["name"], NAME) if "name" in fields else {}
             texts = {language: self.source.text(node) or "" for language, node in words.items()}
             if name and price is not None and len(texts) == 2:
                 out[name] = Item(name, Text(texts["en"], texts["ja"]), price, key.where)
@@ -244,15 +205,22 @@ class _Reader:
             self.findings.add("E_MISSING_KEY", self.head["items"].where, "a stall sells at least one thing")
         return out
 
-    def _longest_item(self) -> Text:
-        names = [item.name for item in self.items.values()] or [Text("", "")]
-        return Text(max((n.en for n in names), key=len), max((n.ja for n in names), key=len))
+    def _abouts(self) -> Iterator[tuple[str, tuple[Mapping[str, Node], Node]]]:
+        """Where the things' descriptions stand; one that is missing is noted."""
+        for key, value in self.source.entries(self.head.get("items")):
+            name = str(key.value)
+            about = value.get("about") if name in self.items else None
+            if about is not None:
+                yield name, (self.source.mapping(about, WORDS), about)
+            elif name in self.items:
+                hint = "about: {en: …, ja: …}, what one sees who takes it up"
+                self.findings.add("W_NO_ABOUT", key.where, f"{name!r} has no description", hint)
 
     def _currency(self) -> Currency:
         node = self.head.get("currency")
         if node is None:
             return _YEN
-        fields = self.source.mapping(node, ("en", "ja"), ("en", "ja"), "currency")
+        fields = self.source.mapping(node, CURRENCY)
         texts = {}
         for language, item in fields.items():
             value = self.source.text(item)
@@ -262,11 +230,13 @@ class _Reader:
         return Currency(Text(texts.get("en", "{n}"), texts.get("ja", "{n}")))
 
     def _endings(self) -> dict[str, EndingDef]:
-        out = {}
-        for key, value in self.source.entries(self.head.get("endings")):
+        out: dict[str, EndingDef] = {}
+        for key, value in self._entries("endings"):
             name = self.source.identifier(key)
-            caption = self.parts.text(self.source.mapping(value, ("en", "ja")), value, 3)
-            if name:
+            caption = self.parts.wording.text(self.source.mapping(value, WORDS), value, ROWS_PER_BOX)
+            if name in out:
+                self.findings.add("E_DUPLICATE_ID", key.where, f"the ending {name!r} is declared twice")
+            elif name:
                 out[name] = EndingDef(name, caption, key.where)
         return out
 
@@ -295,18 +265,23 @@ class _Reader:
 
     # --- the body --------------------------------------------------------------------------------------------
     def _pools(self) -> dict[str, tuple[ChoiceDef, ...]]:
-        out = {}
-        for key, value in self.source.entries(self.head.get("pools")):
+        out: dict[str, tuple[ChoiceDef, ...]] = {}
+        for key, value in self._entries("pools"):
             name = self.source.identifier(key)
             if name:
-                out[name] = self.parts.choices(value, ACTS)
+                # An included file may add choices to a pool of the stall.
+                out[name] = out.get(name, ()) + self.parts.choices(value, ACTS)
         return out
 
     def _node_keys(self) -> dict[str, tuple[Node, Node]]:
         out: dict[str, tuple[Node, Node]] = {}
-        for key, value in self.source.entries(self.head.get("nodes")):
+        for key, value in self._entries("nodes"):
             name = self.source.identifier(key)
-            if name in {"back", "home"}:
+            if name in out:
+                self.findings.add(
+                    "E_DUPLICATE_ID", key.where, f"the node {name!r} is taken", f"first: {out[name][0].where}"
+                )
+            elif name in {"back", "home"}:
                 self.findings.add("E_BAD_ID", key.where, f"{name!r} has a meaning of its own", "choose another name")
             elif name:
                 out[name] = (key, value)
@@ -319,9 +294,10 @@ class _Reader:
         value: Node,
         pools: Mapping[str, Sequence[ChoiceDef]],
         endings: Mapping[str, EndingDef],
+        standing: Sequence[ChoiceDef],
     ) -> NodeDef:
         source, parts = self.source, self.parts
-        fields = source.mapping(value, NODE_KEYS)
+        fields = source.mapping(value, NODE)
         choices = parts.choices(fields.get("choices"))
         node = NodeDef(
             id=name,
@@ -330,12 +306,13 @@ class _Reader:
             to=parts.branches(fields.get("to")),
             choices=choices,
             pools=self._pool_names(fields.get("pool"), pools),
-            draw=self._draw(fields.get("draw")),
+            draw=self._draw(fields),
             standing=source.flag(fields.get("standing"), True),
             call=source.one_of(fields.get("call"), self.node_keys, "E_MISSING_TARGET", "node"),
             end=source.one_of(fields.get("end"), endings, "E_UNKNOWN_ENDING", "ending"),
             effects=parts.effects(fields.get("set")),
             feel=parts.feel(fields.get("feel")),
+            timer=self._timer(fields, choices, standing),
         )
         ways = [word for word in ("to", "choices", "pool", "end") if word in fields]
         if not ways:
@@ -347,9 +324,28 @@ class _Reader:
             self.findings.add("E_UNKNOWN_KEY", second.where, f"{ways[1]!r} beside {ways[0]!r}", "a node has one way on")
         return node
 
-    def _draw(self, node: Node | None) -> int:
-        count = self.source.whole(node, 0, len(ACTS))
+    def _draw(self, fields: Mapping[str, Node]) -> int:
+        count = self.source.whole_of(fields, NODE, "draw")
         return self.around.acts.lines_on_offer if count is None else count
+
+    def _timer(
+        self, fields: Mapping[str, Node], choices: Sequence[ChoiceDef], standing: Sequence[ChoiceDef]
+    ) -> TimerDef | None:
+        """``timer:``, whose default must be a choice that is always there and asks for no offer."""
+        node = fields.get("timer")
+        if node is None:
+            return None
+        found = self.source.mapping(node, TIMER)
+        seconds = self.source.number_of(found, TIMER, "seconds")
+        here = [*choices, *(standing if self.source.flag(fields.get("standing"), True) else ())]
+        known = [c.id for c in here if c.act != "offer" and c.condition is None and c.needs is None]
+        default = self.source.one_of(found.get("default"), known, "E_MISSING_TARGET", "choice")
+        if not ({"choices", "pool"} & {*fields}):
+            self.findings.add(
+                "E_UNKNOWN_KEY", node.where, "'timer' where nothing is chosen", "beside choices: or pool:"
+            )
+            return None
+        return None if seconds is None or default is None else TimerDef(seconds, default, node.where)
 
     def _pool_names(self, node: Node | None, pools: Mapping[str, Sequence[ChoiceDef]]) -> tuple[str, ...]:
         if node is None:

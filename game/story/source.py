@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import yaml
 from game.core.errors import BadInput, Where
 from game.formats.yaml_source import Node, parse_yaml
 from game.story.findings import Findings
+from game.story.grammar import Shape
 
 __all__ = ["ID", "Source"]
 
@@ -27,7 +28,9 @@ class Source:
     def __init__(self, path: Path | str, text: str, findings: Findings, *, traps: bool = True) -> None:
         self.path = str(path)
         self.findings = findings
-        self.rows = text.split("\n")
+        self.traps = traps
+        # The rows of this file and of those it includes, by the path their nodes name.
+        self.rows: dict[str, list[str]] = {self.path: text.split("\n")}
         self.root: Node | None = None
         try:
             self.root = parse_yaml(text, path)
@@ -37,6 +40,10 @@ class Source:
         else:
             if traps:
                 self._traps(text)
+
+    def adopt(self, other: Source) -> None:
+        """Know the text of another file too: nodes of both may be asked for places inside them."""
+        self.rows.update(other.rows)
 
     # --- the file as a whole ---------------------------------------------------------------------------------
     def _duplicates(self, text: str) -> bool:
@@ -83,16 +90,17 @@ class Source:
     def inside(self, node: Node) -> Callable[[int], Where]:
         """Places inside a scalar: character of its text -> Where in the file."""
         line, col = node.where.line or 1, node.where.col or 1
-        first = self.rows[line - 1][col - 1 : col] if line <= len(self.rows) else ""
+        all_rows = self.rows[node.where.path]
+        first = all_rows[line - 1][col - 1 : col] if line <= len(all_rows) else ""
         if first in {"|", ">"}:
             return self._inside_block(node, line)
         shift = 1 if first in {'"', "'"} else 0
-        rows = self.rows[line - 1 : line]
+        rows = all_rows[line - 1 : line]
         one_row = bool(rows) and len(rows[0]) - (col - 1) >= len(node.raw)
 
         def place(offset: int) -> Where:
             # A scalar folded over several rows keeps only its start.
-            return Where(self.path, line, col + shift + offset) if one_row else node.where
+            return Where(node.where.path, line, col + shift + offset) if one_row else node.where
 
         return place
 
@@ -100,18 +108,16 @@ class Source:
         def place(offset: int) -> Where:
             before = node.raw[:offset]
             row = line + 1 + before.count("\n")
-            if row > len(self.rows):
+            if row > len(self.rows[node.where.path]):
                 return node.where
-            content = self.rows[row - 1]
+            content = self.rows[node.where.path][row - 1]
             indent = len(content) - len(content.lstrip(" "))
-            return Where(self.path, row, indent + 1 + offset - (before.rfind("\n") + 1))
+            return Where(node.where.path, row, indent + 1 + offset - (before.rfind("\n") + 1))
 
         return place
 
     # --- typed access ----------------------------------------------------------------------------------------
-    def mapping(
-        self, node: Node, allowed: Sequence[str], required: Iterable[str] = (), what: str = "this"
-    ) -> dict[str, Node]:
+    def mapping(self, node: Node, shape: Shape) -> dict[str, Node]:
         """Key -> value of what is there and known; unknown and missing keys are noted."""
         if node.kind != "mapping":
             self._take(node.error(expected="a mapping (key: value)"))
@@ -119,16 +125,16 @@ class Source:
         out: dict[str, Node] = {}
         for key, value in node.items():
             name = str(key.value)
-            if name in allowed:
+            if name in shape:
                 if value.kind != "null":
                     out[name] = value
             else:
-                hint = self.findings.hint(name, allowed)
+                hint = self.findings.hint(name, shape)
                 self.findings.add("E_UNKNOWN_KEY", key.where, f"unknown key {name!r}", hint)
-        for name in required:
+        for name in shape.required:
             if name not in out:
                 code = "E_MISSING_ID" if name == "id" else "E_MISSING_KEY"
-                self.findings.add(code, node.where, f"{what} needs {name!r}")
+                self.findings.add(code, node.where, f"{shape.title} needs {name!r}")
         return out
 
     def entries(self, node: Node | None) -> list[tuple[Node, Node]]:
@@ -157,9 +163,14 @@ class Source:
         """A number in [low, high]."""
         return None if node is None else self._try(lambda: node.as_float(low, high))
 
-    def whole(self, node: Node | None, low: int, high: int) -> int | None:
-        """A whole number in [low, high]."""
-        return None if node is None else self._try(lambda: node.as_int(low, high))
+    def number_of(self, fields: Mapping[str, Node], shape: Shape, name: str) -> float | None:
+        """The number under a key, in the range the shape gives it."""
+        return self.number(fields.get(name), shape[name].low, shape[name].high)
+
+    def whole_of(self, fields: Mapping[str, Node], shape: Shape, name: str) -> int | None:
+        """The whole number under a key, in the range the shape gives it."""
+        node, key = fields.get(name), shape[name]
+        return None if node is None else self._try(lambda: node.as_int(int(key.low), int(key.high)))
 
     def flag(self, node: Node | None, default: bool) -> bool:
         """true or false."""

@@ -10,7 +10,7 @@ from game.core.errors import BadInput, Where
 from game.story.model import Script
 from game.story.vocabulary import OUTCOMES, Value
 
-__all__ = ["Memory", "StoryState", "begin", "memory_of", "restore", "save"]
+__all__ = ["Memory", "StoryState", "afternoon_of", "begin", "memory_of", "restore", "save"]
 
 SAVE_VERSION = 1
 _MAX_ENTRIES = 20_000
@@ -41,7 +41,7 @@ class StoryState:
     """One talk. ``counter`` is the position in the stream of chance ``seed``; ``turn`` counts the waits.
 
     offered: (choice id, id of the text it is shown with). returns: nodes to come back to, innermost last;
-    ``after:NODE`` means the way on from NODE.
+    ``after:NODE`` means the way on from NODE. heard: how often lines that may come again were said.
     """
 
     stall: str
@@ -57,6 +57,7 @@ class StoryState:
     visits: Mapping[str, int] = field(default_factory=dict)
     said: frozenset[str] = frozenset()
     chosen: frozenset[str] = frozenset()
+    heard: Mapping[str, int] = field(default_factory=dict)
     earlier: frozenset[str] = frozenset()
     variables: Mapping[str, Value] = field(default_factory=dict)
     offered: tuple[tuple[str, str], ...] = ()
@@ -96,6 +97,11 @@ def memory_of(script: Script, state: StoryState) -> Memory:
     return Memory(state.visit, seen, kept)
 
 
+def afternoon_of(script: Script, state: StoryState) -> dict[str, Value]:
+    """The variables that all stalls share, as this talk leaves them."""
+    return {name: state.variables[name] for name, v in script.variables.items() if v.scope == "afternoon"}
+
+
 def save(state: StoryState) -> dict[str, Any]:
     """The state as JSON-ready data."""
     return {
@@ -113,6 +119,7 @@ def save(state: StoryState) -> dict[str, Any]:
         "visits": dict(sorted(state.visits.items())),
         "said": sorted(state.said),
         "chosen": sorted(state.chosen),
+        "heard": dict(sorted(state.heard.items())),
         "earlier": sorted(state.earlier),
         "variables": dict(state.variables),
         "offered": [list(pair) for pair in state.offered],
@@ -155,6 +162,7 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
         visits=reader.counts("visits"),
         said=frozenset(reader.texts("said")),
         chosen=frozenset(reader.texts("chosen")),
+        heard=reader.counts("heard") if "heard" in data else {},
         earlier=frozenset(reader.texts("earlier")),
         variables=_variables(script, reader.values("variables")),
         offered=reader.pairs("offered"),

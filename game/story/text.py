@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from game.core.errors import BadInput
+from game.story.forms import PERSON_SLOTS, Pronoun, capitalised, form_of
 
-__all__ = ["LANGUAGES", "ROWS_PER_BOX", "ROW_CHARS", "Text", "fill", "slots", "wrap"]
+__all__ = ["LANGUAGES", "ROWS_PER_BOX", "ROW_CHARS", "Pronoun", "Text", "fill", "forms_in", "slots", "wrap"]
 
 LANGUAGES: tuple[str, ...] = ("en", "ja")
 ROW_CHARS = {"en": 38, "ja": 22}
@@ -31,7 +32,7 @@ class Text:
 
     @cached_property
     def names(self) -> frozenset[str]:
-        """What stands in braces in either language."""
+        """The names that stand in braces in either language."""
         return frozenset(name for words in (self.en, self.ja) for name, _ in slots(words))
 
     def get(self, language: str) -> str:
@@ -42,19 +43,43 @@ class Text:
 
 
 def slots(text: str) -> list[tuple[str, int]]:
-    """What stands in braces, with its place in the text; a lone brace is given as '{' or '}'."""
-    found = [(match.group(1), match.start()) for match in _SLOT.finditer(text)]
+    """The names that stand in braces, with their places in the text; a lone brace is given as '{' or '}'."""
+    found = [(match.group(1).partition(":")[0], match.start()) for match in _SLOT.finditer(text)]
     rest = _SLOT.sub(lambda match: "\0" * len(match.group()), text)
     found += [(char, index) for index, char in enumerate(rest) if char in "{}"]
     return sorted(found, key=lambda item: item[1])
 
 
-def fill(text: str, value_of: Callable[[str], str | None]) -> str:
-    """Replace ``{name}`` by its value; what has none stays as it stands. No format language, nothing nested."""
+def forms_in(text: str) -> list[tuple[str, str, int]]:
+    """(name, forms, place) of every ``{name:form|form}``."""
+    found = [(*match.group(1).partition(":")[::2], match) for match in _SLOT.finditer(text) if ":" in match.group(1)]
+    return [(name, forms, match.start()) for name, forms, match in found]
+
+
+def fill(
+    text: str,
+    value_of: Callable[[str], str | None],
+    number_of: Callable[[str], float | None] = lambda name: None,
+    language: str = "en",
+) -> str:
+    """Replace ``{name}`` by its value and ``{name:one|other}`` by the form that goes with its number.
+
+    What has no value stays as it stands. No format language, nothing nested.
+    """
 
     def one(match: re.Match[str]) -> str:
-        value = value_of(match.group(1)) if _NAME.fullmatch(match.group(1)) else None
-        return match.group() if value is None else value
+        name, colon, forms = match.group(1).partition(":")
+        if not _NAME.fullmatch(name):
+            return match.group()
+        if colon:
+            number = number_of(name)
+            value = None if number is None else form_of(forms, number, language)
+        else:
+            value = value_of(name)
+        if value is None:
+            return match.group()
+        grows = language == "en" and (colon or name in PERSON_SLOTS)
+        return capitalised(value, text[: match.start()]) if grows else value
 
     return _SLOT.sub(one, text)
 

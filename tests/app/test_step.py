@@ -9,9 +9,10 @@ import pytest
 
 from game.app.afternoon import Afternoon, visit_stall
 from game.app.loading import load_step_assets
-from game.app.step import StepAssets, new_world, step
+from game.app.step import StepAssets, new_world, speech_stage, step
 from game.app.talk import Choice
 from game.app.world import Intent, World, enter_talk, leave_talk
+from game.story import Spoken, Timer
 
 
 @pytest.fixture(scope="module")
@@ -98,3 +99,47 @@ def test_leaving_calms_down(assets) -> None:
     world = run(assets, leave_talk(talk_to_her(assets)), 3.0)
     assert world.talk is None
     assert world.felt.max() < 0.35
+
+
+def _timed(assets: StepAssets, seconds: float, choice: str = "wait") -> World:
+    """Her hub with a timer on it."""
+    world = talk_to_her(assets)
+    assert world.talk is not None
+    beat = replace(world.talk.beat, timer=Timer(seconds, choice))
+    return replace(world, talk=replace(world.talk, beat=beat), timers=1.0)
+
+
+def test_a_timed_choice_takes_its_default_after_its_ticks(assets) -> None:
+    before = _timed(assets, 2.0)
+    assert before.time_left == 1.0
+    world = run(assets, before, 1.0)
+    assert world.waiting
+    assert world.time_left == pytest.approx(0.5)
+    world = run(assets, world, 1.1)
+    assert not world.waiting, "silence was the choice, and she answers it"
+    assert world.marks[-1].act == "wait"
+    assert world.time_left is None
+    # A choice in time is the player's own, and the next one has all its time.
+    option = next(o for o in before.talk.beat.choices if o.act == "joke" or o.available)
+    world = step(assets, run(assets, before, 1.0), Intent(choice=Choice(option.id)))
+    assert world.waited == 0
+
+
+def test_timers_are_off_unless_asked_for_and_may_be_slower(assets) -> None:
+    off = replace(_timed(assets, 2.0), timers=0.0)
+    assert off.time_left is None
+    assert run(assets, off, 4.0).waiting
+    slow = run(assets, replace(_timed(assets, 2.0), timers=3.0), 4.0)
+    assert slow.waiting
+    assert slow.time_left == pytest.approx(1.0 / 3.0, abs=0.01)
+
+
+def test_a_gesture_named_by_the_script_is_called_up_with_the_line(assets) -> None:
+    world = replace(talk_to_her(assets), felt=np.array([0, 0, 0.9, 0, 0, 0.0]))
+    line = Spoken("x", "shopkeeper", "Mm.", "うん。", gesture="open_palm")
+    world = speech_stage(assets, replace(world, queue=(line,)), Intent())
+    assert world.speech is not None
+    names = [assets.planner.library.units[u].name for u in assets.planner.library.gestures]
+    assert [names[g] for g in world.speech.cues.gesture] == ["open_palm"]
+    plain = speech_stage(assets, replace(world, speech=None, queue=(replace(line, gesture="no_such"),)), Intent())
+    assert plain.speech.cues.gesture.size == 0

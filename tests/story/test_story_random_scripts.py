@@ -20,7 +20,7 @@ person: mira
 start: n0
 home: hub
 items:
-  cup: {list_price: 100, name: {en: cup, ja: 湯のみ}}
+  cup: {list_price: 100, name: {en: cup, ja: 湯のみ}, about: {en: A., ja: B.}}
 variables:
   talk: {a: 0, b: false, c: "x"}
   stall: {d: 2}

@@ -17,7 +17,7 @@ from game.core import BadInput, Where
 from game.face import REGIONS, Face, Parts, load_expressions, load_parts, load_weights
 from game.formats import Node, parse_yaml
 from game.formats.files import decode_utf8, read_bytes, write_text
-from game.story.reader import load_faces
+from game.story.surroundings import load_faces
 from game.tools.face.fitting import FaceFit, PartFit
 
 __all__ = [
