@@ -8,7 +8,9 @@ import re
 from game.core.emotion_space import parse_emotion
 from game.core.errors import BadInput
 
-__all__ = ["add_emotion", "parse_size"]
+__all__ = ["add_emotion", "parse_day_share", "parse_size"]
+
+OPENS_MIN, CLOSES_MIN = 13 * 60, 18 * 60  # the market's afternoon, minutes of the day
 
 MAX_SIDE = 8192
 
@@ -22,6 +24,15 @@ def parse_size(text: str) -> tuple[int, int]:
     if not (64 <= width <= MAX_SIDE and 64 <= height <= MAX_SIDE):
         raise argparse.ArgumentTypeError(f"expected sides from 64 to {MAX_SIDE} but saw {text!r}")
     return width, height
+
+
+def parse_day_share(text: str) -> float:
+    """``16:30`` -> 0.7, the share of the afternoon from 13:00 to 18:00."""
+    match = re.fullmatch(r"(\d{1,2}):([0-5]\d)", text.strip())
+    minutes = int(match[1]) * 60 + int(match[2]) if match else -1
+    if not OPENS_MIN <= minutes <= CLOSES_MIN:
+        raise argparse.ArgumentTypeError(f"expected a time from 13:00 to 18:00 but saw {text!r}")
+    return (minutes - OPENS_MIN) / (CLOSES_MIN - OPENS_MIN)
 
 
 def _emotion(text: str) -> object:

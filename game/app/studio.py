@@ -26,7 +26,7 @@ from game.app.strings import load_strings
 from game.app.ui import PALETTE, Canvas, Rect
 from game.app.world import TICK_S, Intent, World
 from game.core.errors import BadInput, Where
-from game.render import CLOSEUP, LEVELS, Camera, Device, FontSet, Hud, Renderer, level_named
+from game.render import CLOSEUP, DESIGN_SHARE, LEVELS, Camera, Device, FontSet, Hud, Renderer, level_named
 from game.render.assets import save_png
 from game.story import Spoken
 
@@ -45,7 +45,7 @@ WARM_UP_S = 1.5
 
 def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     """What ``snapshot`` and ``film`` share."""
-    from game.app.arguments import add_emotion
+    from game.app.arguments import add_emotion, parse_day_share
 
     add_emotion(parser)
     parser.add_argument("--shown", default=None, metavar="NAME=X,…", help="what the face shows, if not what is felt")
@@ -55,6 +55,7 @@ def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     levels = [level.name for level in LEVELS]
     parser.add_argument("--level", choices=levels, default="ultra", help="quality level (default ultra)")
     parser.add_argument("--camera", choices=sorted(CAMERAS), default=None, help="where from")
+    parser.add_argument("--time-of-day", type=parse_day_share, default=None, metavar="HH:MM", help="13:00 to 18:00")
     parser.add_argument("--overlay", action="store_true", help="feelings and active nodes, as in the paper's figure 6")
     parser.add_argument("--networks", action="store_true", help="the three networks with live factors")
     parser.add_argument("--seed", type=int, default=1, help="one seed, one picture (default 1)")
@@ -82,6 +83,7 @@ class Studio:
             self.session.overlays |= {"networks"}
         self._label = ""
         self.draw_over: Callable[[Studio, Canvas], None] | None = None
+        self.day_share = DESIGN_SHARE if args.time_of_day is None else float(args.time_of_day)
         self.camera = CAMERAS[args.camera or camera]
         self.device = Device.headless(*size)
         stage = load_stage()
@@ -128,6 +130,7 @@ class Studio:
             camera=self.camera,
             show_face=world.mode != "body",
             time_s=world.time_s,
+            day_share=self.day_share,
             hud=self._draw_hud,
         )
         self.renderer.draw(view)

@@ -2,6 +2,7 @@
 
 from game.render.assets import load_character, load_picture, load_stall, save_png
 from game.render.camera import CLOSEUP, HERO, Camera
+from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device
 from game.render.hud import Colour, Hud, rgba
 from game.render.levels import DEFAULT, LEVELS, Level, level_named, pick_level
@@ -13,6 +14,7 @@ from game.render.view import FrameView
 __all__ = [
     "CLOSEUP",
     "DEFAULT",
+    "DESIGN_SHARE",
     "HERO",
     "LEVELS",
     "Camera",

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.render.camera import Camera, look_at, orthographic
+from game.render.daylight import DESIGN_SHARE, Daylight, daylight
 from game.render.device import Device, Owner
 
 __all__ = ["STALL_LIGHT", "STUDIO_LIGHT", "TABLE_LIGHT", "FrameBlock", "LightBox", "Lights"]
@@ -20,15 +21,18 @@ def _unit(x: float, y: float, z: float) -> NDArray[np.float64]:
 
 @dataclass(frozen=True, eq=False)
 class Lights:
-    """Directions toward the sun and the two back lights, unit vectors."""
+    """Directions toward the sun and the two back lights, unit vectors, and what the hour makes of the colours."""
 
     sun: NDArray[np.float64]
     warm: NDArray[np.float64]
     cool: NDArray[np.float64]
+    day: Daylight
 
     @classmethod
-    def market(cls) -> Lights:
-        return cls(_unit(-0.52, 0.66, 0.54), _unit(0.75, 0.45, -0.55), _unit(-0.8, 0.25, -0.5))
+    def market(cls, day_share: float = DESIGN_SHARE) -> Lights:
+        """The light at a share of the afternoon."""
+        day = daylight(day_share)
+        return cls(np.asarray(day.sun), _unit(0.75, 0.45, -0.55), _unit(-0.8, 0.25, -0.5), day)
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,9 @@ TABLE_LIGHT = LightBox((0.03, 0.93, 0.08), 0.62, 0.62, 2.9, 5.1, 0.0012)  # the 
 STUDIO_LIGHT = LightBox((0.0, 0.70, 0.0), 0.95, 0.95, 2.6, 6.2, 0.0010)  # the whole person
 
 
+_ROWS = 18
+
+
 class FrameBlock(Owner):
     """The std140 block ``Frame`` of frame.glsl on the GPU."""
 
@@ -61,7 +68,7 @@ class FrameBlock(Owner):
 
     def __init__(self, device: Device) -> None:
         super().__init__()
-        self._buffer = self.own(device.context.buffer(reserve=224, dynamic=True))
+        self._buffer = self.own(device.context.buffer(reserve=_ROWS * 16, dynamic=True))
         self._written: tuple[object, ...] = ()
         self._world_to_clip = np.eye(4)
 
@@ -86,13 +93,16 @@ class FrameBlock(Owner):
         projection = camera.projection(aspect)
         world_to_clip = projection @ camera.view()
         scale = height / 720.0
-        rows = np.zeros((14, 4), dtype=np.float32)
+        rows = np.zeros((_ROWS, 4), dtype=np.float32)
         rows[0:4] = world_to_clip.T
         rows[4:8] = box.world_to_light(lights.sun).T
         rows[8, :3], rows[9, :3], rows[10, :3] = lights.sun, lights.warm, lights.cool
         rows[11, :3] = camera.eye
         rows[12] = (width, height, line_px * scale, self.FEATHER_PX * max(1.0, scale**0.5))
         rows[13] = (projection[2, 3], -projection[2, 2], box.bias, self.HEAD_PUSH_M)
+        day = lights.day
+        rows[14:18, :3] = day.lit, day.shade, day.deep, day.rim
+        rows[14, 3] = day.lamps
         self._buffer.write(rows)
         self._world_to_clip = world_to_clip
         return world_to_clip

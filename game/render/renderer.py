@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from game.face.mesh import DrawList
 from game.render.character_drawing import CharacterDrawing
+from game.render.daylight import DESIGN_SHARE, stepped
 from game.render.device import PREMULTIPLIED, Device, Owner
 from game.render.face_painter import FACE_MM, FacePainter, hidden_face
 from game.render.hud import Hud
@@ -132,7 +133,9 @@ class Renderer(Owner):
     def _draw(self, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None) -> moderngl.Framebuffer:
         """Draw a frame into the canvas and, if given, the window; returns where it can be read."""
         targets = canvas.targets
-        key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items)
+        day_share = stepped(view.day_share) if view.show_stall else DESIGN_SHARE
+        key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share)
+        self._light_up(day_share)
         changed = canvas.last_box
         if self._bake(key, canvas):
             changed = (0, 0, *targets.size)
@@ -146,6 +149,11 @@ class Renderer(Owner):
         self._frames += 1
         return self._show(view, targets, changed, window)
 
+    def _light_up(self, day_share: float) -> None:
+        if self._lights.day.share != day_share:
+            self._lights = Lights.market(day_share)
+            self._light = None
+
     def _bake(self, key: BakeKey, canvas: _Canvas) -> bool:
         """See that the baked picture fits; True if it was drawn."""
         turned = canvas.seen is not None and key.camera != canvas.seen.camera
@@ -154,7 +162,7 @@ class Renderer(Owner):
         canvas.turning, canvas.seen = turned, key
         if key == canvas.baked and (draft or not canvas.is_draft):
             return False
-        self._scene.bake(key, canvas.targets.bake, self.level.line_px, draft=draft)
+        self._scene.bake(key, canvas.targets.bake, self.level.line_px, self._lights, draft=draft)
         canvas.baked, canvas.is_draft = key, draft
         return True
 

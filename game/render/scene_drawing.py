@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.render.camera import HERO, Camera
+from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device, Owner, layout, set_uniforms
 from game.render.lighting import STALL_LIGHT, FrameBlock, Lights
 from game.render.model import Run, StaticMesh
@@ -37,6 +38,7 @@ class BakeKey:
     size: tuple[int, int]
     stall: bool
     hidden: frozenset[str]
+    day_share: float = DESIGN_SHARE
 
 
 class SceneDrawing(Owner):
@@ -129,7 +131,7 @@ class SceneDrawing(Owner):
             self._receivers[key] = (program, self.own(self._device.vertex_array(program, [entry])))
         return self._receivers[key][1]
 
-    def bake(self, key: BakeKey, targets: BakeTargets, line_px: float, *, draft: bool = False) -> None:
+    def bake(self, key: BakeKey, targets: BakeTargets, line_px: float, lights: Lights, *, draft: bool = False) -> None:
         """Draw everything that stands still into ``targets``: the graded picture, its depth, and the dark picture.
 
         A ``draft`` is drawn without samples where that saves any, for the frames of a moving camera.
@@ -137,7 +139,8 @@ class SceneDrawing(Owner):
         context = self._context
         raw = targets.raw_draft if draft else targets.raw
         runs = self._runs(key)
-        self._frame.write(key.camera, self._lights, STALL_LIGHT, key.size, line_px)
+        self._lights = lights
+        self._frame.write(key.camera, lights, STALL_LIGHT, key.size, line_px)
         self._cast(runs)
         raw.use()
         raw.clear(depth=1.0)
@@ -176,7 +179,16 @@ class SceneDrawing(Owner):
         self._pictures[key.stall].use(0)
         aspect = key.size[0] / key.size[1]
         place = _backdrop_place(key.camera, aspect) if key.stall else (1.0, 1.0, 0.0, 0.0)
-        set_uniforms(self._backdrop_program, place=place, gain=gain)
+        day, plain = self._lights.day, np.ones(3)
+        set_uniforms(
+            self._backdrop_program,
+            place=place,
+            gain=gain,
+            eye_level=(_HORIZON, day.lamps if key.stall else 0.0, 16.0 / 9.0, 0.0),
+            sky=day.sky if key.stall else plain,
+            horizon=day.horizon if key.stall else plain,
+            ground=day.ground if key.stall else plain,
+        )
         self._backdrop.render()
 
     def _shade(self, runs: Iterable[Run], sun_share: float) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from game.face.mesh import DrawList
 from game.render.camera import HERO, Camera
+from game.render.daylight import DESIGN_SHARE
 
 if TYPE_CHECKING:
     from game.render.hud import Hud
@@ -25,7 +26,8 @@ class FrameView:
     skin_matrices (j, 4, 4): joint world matrix times inverse bind matrix, in the order of the model's joints.
     face: the expression's draw list, or None for the one shown last (the same object again costs nothing).
     show_face False draws a blank face with two guide lines. show_stall False draws the person alone in a studio.
-    hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
+    hidden_items: groups of the stall (``item:teapot_gold``) that are not there. day_share: of the afternoon, 0 at 13:00 to 1 at
+    18:00. hud: draws interface on top.
     """
 
     skin_matrices: NDArray[np.float32]
@@ -35,4 +37,5 @@ class FrameView:
     show_stall: bool = True
     hidden_items: frozenset[str] = frozenset()
     time_s: float = 0.0
+    day_share: float = DESIGN_SHARE
     hud: Callable[[Hud], None] | None = None

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from game.app.arguments import parse_day_share
 from game.app.director import Direction, Moment, direct, start_direction
 from game.app.shots import ESTABLISHING, SHOTS, camera_of, numbers_of, stand
 
@@ -165,3 +167,14 @@ def test_resting_hands_stand_clear_of_the_panels_while_the_player_chooses(shot: 
         left, top = pixel(SHOTS[shot], (x, 0.61, 0.36))
         assert 20 < left < 880
         assert top < 582, "the subtitles begin at 582"
+
+
+@pytest.mark.parametrize(("text", "share"), [("13:00", 0.0), ("16:30", 0.7), ("18:00", 1.0)])
+def test_a_time_of_day_is_a_share_of_the_afternoon(text: str, share: float) -> None:
+    assert parse_day_share(text) == pytest.approx(share)
+
+
+@pytest.mark.parametrize("text", ["12:59", "18:01", "4 pm", "16:75", ""])
+def test_times_outside_the_market_are_refused(text: str) -> None:
+    with pytest.raises(argparse.ArgumentTypeError, match="13:00 to 18:00"):
+        parse_day_share(text)

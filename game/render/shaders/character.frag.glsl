@@ -29,15 +29,15 @@ void main() {
     float e = v_extra.y + 0.030 * sin(az * 13.0) + 0.012 * sin(az * 37.0 + 1.0);
     float wide = sat((e - 0.385) * 66.0) * sat((0.495 - e) * 50.0);
     float thin = sat((e - 0.335) * 100.0) * sat((0.367 - e) * 100.0);
-    vec3 gleam = mix(v_lit * 1.45 + vec3(0.13, 0.09, 0.04), vec3(1.0, 0.80, 0.58), 0.25);
+    vec3 gleam = mix(v_lit * 1.45 + vec3(0.13, 0.09, 0.04), vec3(1.0, 0.80, 0.58) * tint_lit.rgb, 0.25);
     c = mix(c, gleam, sat(wide * 0.72 + thin * 0.35) * mix(0.35, 1.0, lit_share) * sat(v_shadow.w * 2.5 - 0.12));
 #endif
 #if GLOSS
-    c = mix(c, vec3(1.0, 0.98, 0.93), sat((h - 0.955) * 60.0) * 0.8 * sun);
+    c = mix(c, vec3(1.0, 0.98, 0.93) * tint_lit.rgb, sat((h - 0.955) * 60.0) * 0.8 * sun);
 #endif
 #if FACE
     vec4 ink = texture(face_texture, v_extra.xy) * v_extra.z;
-    c = c * (1.0 - ink.a) + ink.rgb * mix(vec3(0.90, 0.84, 0.90), vec3(1.0), max(lit_share, 0.35));
+    c = c * (1.0 - ink.a) + ink.rgb * mix(vec3(0.90, 0.84, 0.90), vec3(1.0), max(lit_share, 0.35)) * mix(vec3(1.0), tint_lit.rgb, 0.5);
 #endif
     colour = vec4(rims(c, v_terms.y, v_terms.z, SKIN + FACE > 0 ? 0.41 : 0.75), 1.0);
 }

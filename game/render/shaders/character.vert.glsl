@@ -1,3 +1,4 @@
+#include "frame.glsl"
 in vec4 clip;
 in vec4 terms;
 in vec4 shadow_place;
@@ -16,7 +17,7 @@ void main() {
     v_terms = terms;
     v_shadow = shadow_place;
     v_extra = extra;
-    v_lit = lit;
-    v_shade = shade;
-    v_deep = deep;
+    v_lit = lit * tint_lit.rgb;
+    v_shade = shade * tint_shade.rgb;
+    v_deep = deep * tint_deep.rgb;
 }

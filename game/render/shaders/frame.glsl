@@ -8,5 +8,9 @@ layout(std140) uniform Frame {
     vec4 eye;              // xyz: world
     vec4 viewport;         // x, y: pixels; z: outline width in pixels; w: feather in pixels
     vec4 depth_terms;      // x, y: projection[2][3], -projection[2][2]; z: shadow bias; w: head push in metres
+    vec4 tint_lit;         // rgb: what the hour of the day makes of lit palette colours; w: lamps, 0 out to 1 bright
+    vec4 tint_shade;       // rgb: of shaded ones
+    vec4 tint_deep;        // rgb: of the darkest, and of outlines
+    vec4 tint_rim;         // rgb: of the back lights
 };
 float sat(float v) { return clamp(v, 0.0, 1.0); }

@@ -14,6 +14,6 @@ void main() {
     float width = outline * viewport.z * line_weight(dot(normal, light.xyz)) * min(1.0, size * 2.0 * 0.6);
     p.xy += away * width * 2.0 / viewport.xy * p.w;
     p.z += 0.0009 * p.w;
-    ink = deep * vec3(0.50, 0.40, 0.46);
+    ink = deep * tint_deep.rgb * vec3(0.50, 0.40, 0.46);
     gl_Position = p;
 }

@@ -1,3 +1,4 @@
+#include "frame.glsl"
 in vec4 clip;
 in vec4 line;
 in vec3 deep;
@@ -6,5 +7,5 @@ out vec3 v_deep;
 void main() {
     gl_Position = clip;
     v_line = line;
-    v_deep = deep;
+    v_deep = deep * tint_deep.rgb;
 }

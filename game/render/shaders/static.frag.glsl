@@ -20,7 +20,7 @@ void main() {
     vec3 c = three_tones(v_lit, v_shade, v_deep, terms.x, sun, terms.w, 0.018, lit_share);
 #if GLOSS
     float spot = pow(max(dot(n, normalize(light.xyz + to_eye)), 0.0), 60.0);
-    c = mix(c, vec3(1.0, 0.98, 0.93), smoothstep(0.35, 0.5, spot) * 0.85 * sun);
+    c = mix(c, vec3(1.0, 0.98, 0.93) * tint_lit.rgb, smoothstep(0.35, 0.5, spot) * 0.85 * sun);
     c += vec3(0.05, 0.06, 0.09) * smoothstep(0.35, 0.6, 1.0 - dot(n, to_eye));
 #endif
 #if !FLAT

@@ -14,8 +14,8 @@ void main() {
     v_world = position;
     v_normal = normal;
     v_shadow = (world_to_light * vec4(position, 1.0)).xyz * 0.5 + 0.5;
-    v_lit = lit;
-    v_shade = shade;
-    v_deep = deep;
+    v_lit = lit * tint_lit.rgb;
+    v_shade = shade * tint_shade.rgb;
+    v_deep = deep * tint_deep.rgb;
     gl_Position = world_to_clip * vec4(position, 1.0);
 }

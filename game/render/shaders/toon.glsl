@@ -39,5 +39,5 @@ vec3 skin_terminator(vec3 c, float h, float sun) {
 
 vec3 rims(vec3 c, float warm, float cool, float warm_strength) {
     float a = sat((warm - 0.60) * 10.0), b = sat((cool - 0.66) * 10.0);
-    return c + (c * 0.55 + vec3(0.16, 0.13, 0.09)) * (a * warm_strength) + (c * 0.3 + vec3(0.04, 0.07, 0.13)) * (b * 0.55);
+    return c + (c * 0.55 + vec3(0.16, 0.13, 0.09)) * tint_rim.rgb * (a * warm_strength) + (c * 0.3 + vec3(0.04, 0.07, 0.13)) * tint_shade.rgb * (b * 0.55);
 }
