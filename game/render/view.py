@@ -26,8 +26,8 @@ class FrameView:
     skin_matrices (j, 4, 4): joint world matrix times inverse bind matrix, in the order of the model's joints.
     face: the expression's draw list, or None for the one shown last (the same object again costs nothing).
     show_face False draws a blank face with two guide lines. show_stall False draws the person alone in a studio.
-    hidden_items: groups of the stall (``item:teapot_gold``) that are not there. day_share: of the afternoon, 0 at 13:00 to 1 at
-    18:00. hud: draws interface on top.
+    hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
+    day_share: of the afternoon, 0 at 13:00 to 1 at 18:00.
     """
 
     skin_matrices: NDArray[np.float32]
