@@ -3,6 +3,7 @@
 examples:
   run_game.py bench
   run_game.py bench planner render --json
+  run_game.py bench autoplay --inkjs DIR      beside inkjs (npm install inkjs in DIR)
   run_game.py bench observer                  can the feeling be told from the body? (not part of plain bench)
 
 A floor is the least code that does the same work: NumPy alone, a bare scene, a hand-written loop. Benchmarks are no
@@ -20,6 +21,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from game.app.bench_rows import Row, row
@@ -32,6 +34,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``bench``."""
     parser.add_argument("what", nargs="*", choices=[*BENCHES, []], metavar="WHAT", help=f"of {' '.join(BENCHES)}")
     parser.add_argument("--quick", action="store_true", help="observer: fewer performances, no second observers")
+    parser.add_argument(
+        "--inkjs", type=Path, metavar="DIR", help="autoplay: a folder where inkjs is installed, for comparison"
+    )
     parser.add_argument("--json", action="store_true", help="machine-readable")
 
 
@@ -56,36 +61,29 @@ def render() -> list[Row]:
     return bench_render.rows()
 
 
-def autoplay() -> list[Row]:
-    """Talks per second, with and without the body's planner."""
+def autoplay(inkjs: Path | None = None) -> list[Row]:
+    """Choices per second of the story engine and of whole talks, and talks per second with the body's planner.
+
+    inkjs: a folder where ``npm install inkjs`` was run, to measure it beside ours on the same talk.
+    """
+    from game.app import bench_talk
     from game.app.autoplay import play_episode
     from game.app.body import BATCH, BodyObserver
     from game.app.content import load_talk_assets, stall_path
     from game.app.policies import POLICIES
 
     assets = load_talk_assets(stall_path("flea"))
+    rows = bench_talk.rows(inkjs)
 
-    def talks(count: int, observer: BodyObserver | None) -> tuple[float, int]:
+    def with_bodies(observer: BodyObserver) -> float:
         start = time.perf_counter()
-        played = [
-            [after for _, after, _, _ in play_episode(assets, POLICIES["random"], 1, episode)]
-            for episode in range(count)
-        ]
-        if observer is not None:
-            observer.watch(assets, played, 1)
-        return time.perf_counter() - start, sum(len(talk) for talk in played)
+        played = [[move[1] for move in play_episode(assets, POLICIES["random"], 1, i)] for i in range(BATCH)]
+        observer.watch(assets, played, 1)
+        return BATCH / (time.perf_counter() - start)
 
-    talks(20, None)
-    plain = [talks(150, None) for _ in range(3)]
-    rate = [moves / seconds for seconds, moves in plain]
-    rows = [
-        row("autoplay: talk alone, choices/s", rate, unit="/s", more_is_better=True),
-        row("autoplay: talk alone, episodes/s", [150 / s for s, _ in plain], unit="/s", more_is_better=True),
-    ]
     observer = BodyObserver.load(explain=False)
-    with_body = [talks(BATCH, observer) for _ in range(2)]
-    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", [BATCH / s for s, _ in with_body], unit="/s",
-                    more_is_better=True))  # fmt: skip
+    rates = [with_bodies(observer) for _ in range(2)]
+    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", rates, unit="/s", more_is_better=True))
     return rows
 
 
@@ -144,7 +142,10 @@ def run(args: argparse.Namespace) -> int:
     """Run the chosen benches and print one table, or one JSON document."""
     results: dict[str, list[dict[str, Any]]] = {}
     for name in args.what or [name for name in BENCHES if name != "observer"]:
-        rows = observer(args.quick) if name == "observer" else BENCHES[name]()
+        if name == "observer":
+            rows = observer(args.quick)
+        else:
+            rows = autoplay(args.inkjs) if name == "autoplay" else BENCHES[name]()
         results[name] = rows
         if not args.json:
             _print(name, rows)

@@ -14,8 +14,6 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from game.app.afternoon import Afternoon, Bought
 from game.app.talk import TalkAssets, TalkState, talk_env
 from game.core.errors import BadInput, Where
@@ -98,7 +96,7 @@ def save_game(path: Path, afternoon: Afternoon, talk: TalkState | None) -> None:
             "deal_price": talk.deal_price,
             "story": save_story(talk.story),
             "feeling": {
-                "felt": [float(v) for v in talk.feeling.felt],
+                "felt": list(talk.feeling.six),
                 "mask_shows": talk.feeling.mask_shows,
                 "last_right": talk.feeling.last_right,
                 "used": sorted(talk.feeling.used),
@@ -218,7 +216,7 @@ def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:
         story=story,
         beat=Beat(node="", lines=(), choices=(), stimuli=(), ended=None),
         feeling=Feeling(
-            felt=np.array([v.number(0, 1) for v in felt]),
+            six=tuple(v.number(0, 1) for v in felt),
             mask_shows=feeling.at("mask_shows").whole(0, 6),
             last_right=feeling.at("last_right").text(),
             used=frozenset(u.text() for u in feeling.at("used").items()),

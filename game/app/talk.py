@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from game.core.errors import BadInput
+from game.core.streams import Streams
 from game.emotion import (
     Feeling,
     FeelingRules,
@@ -26,7 +24,7 @@ from game.emotion import (
     appraise,
     felt_label,
     pass_round,
-    shown_emotion,
+    shown_values,
     start_feeling,
 )
 from game.market import (
@@ -45,20 +43,19 @@ from game.story import Beat, Chose, Memory, Script, Start, StoryState, advance, 
 
 __all__ = ["MONEY_STEP", "Choice", "TalkAssets", "TalkState", "ask_money", "choose", "start_talk", "talk_env"]
 
-Floats = NDArray[np.float64]
-
 MONEY_STEP = 10
 """Prices are spoken in whole tens of yen."""
 
 
 @dataclass(frozen=True, eq=False)
 class TalkAssets:
-    """What a talk needs and never changes: the script, the rules and the person."""
+    """What a talk needs and never changes: the script, the rules and the person, and where its chance comes from."""
 
     script: Script
     feelings: FeelingRules
     market: MarketRules
     person: Temperament
+    streams: Streams = field(default_factory=Streams, repr=False)
 
 
 @dataclass(frozen=True)
@@ -70,6 +67,7 @@ class Choice:
 
 
 _NO_ANSWER = Answer(OfferResult.NONE)
+_OFFER_OUTCOMES = {OfferResult.REFUSED: "refused_offer", OfferResult.INSULT: "insulted"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,12 +98,6 @@ class TalkState:
         return surplus_share(self.bargain)
 
 
-def _rng(seed: int, stream: str, counter: int) -> np.random.Generator:
-    """A generator of its own for each purpose and round: what one stage draws never shifts another's."""
-    name = int.from_bytes(stream.encode("ascii")[:4], "big")
-    return np.random.Generator(np.random.Philox(key=(seed & 0xFFFFFFFF) << 64 | name << 32 | counter))
-
-
 def ask_money(list_price: int, ask: float) -> int:
     """The public asking price in yen, rounded up to whole tens, never above the list price."""
     return min(math.ceil(round(ask * list_price / MONEY_STEP, 6)) * MONEY_STEP, list_price)
@@ -114,7 +106,7 @@ def ask_money(list_price: int, ask: float) -> int:
 def talk_env(state: TalkState, assets: TalkAssets, **now: Any) -> dict[str, float | str | bool]:
     """The names a dialogue condition may use; what is felt is not among them, on purpose."""
     ask = ask_money(state.list_price, state.bargain.ask)
-    env: dict[str, float | str | bool] = {
+    return {
         "rounds": assets.market.rounds,
         "trust": state.bargain.trust,
         "patience": state.bargain.patience,
@@ -127,8 +119,8 @@ def talk_env(state: TalkState, assets: TalkAssets, **now: Any) -> dict[str, floa
         "offer": round(state.bargain.offer * state.list_price),
         "deal_price": state.deal_price,
         "tidying": state.answer.tidying,
+        **now,
     }
-    return env | now
 
 
 def start_talk(
@@ -149,8 +141,10 @@ def start_talk(
         raise BadInput("item", expected=" | ".join(assets.script.items), seen=item)
     list_price = assets.script.items[item].list_price
     story = begin(assets.script, item, seed, memory=memory, afternoon=shared)
-    feeling = start_feeling(assets.feelings, assets.person, _rng(seed, "mood", 0))
-    bargain = start_bargain(assets.market, assets.person.patience, _rng(seed, "mark", 0), failed_visits=failed_visits)
+    feeling = start_feeling(assets.feelings, assets.person, assets.streams.at(seed, "mood", 0))
+    bargain = start_bargain(
+        assets.market, assets.person.patience, assets.streams.at(seed, "mark", 0), failed_visits=failed_visits
+    )
     visit = 1 if memory is None else memory.visits + 1
     nothing = Beat(node="", lines=(), choices=(), stimuli=(), ended=None)
     first = TalkState(seed, item, list_price, purse, story, feeling, bargain, nothing, visit=visit)
@@ -184,10 +178,11 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     """
     if state.ended:
         raise BadInput("choice", expected="a talk that goes on", seen=state.beat.ended)
-    known = {option.id: option for option in state.beat.choices if option.available}
-    if choice.id not in known:
+    said = next((option for option in state.beat.choices if option.id == choice.id and option.available), None)
+    if said is None:
+        known = [option.id for option in state.beat.choices if option.available]
         raise BadInput("choice", expected=" | ".join(known), seen=choice.id)
-    act = known[choice.id].act
+    act = said.act
     offer = _offer_share(state, choice.offer)
     if act == "offer" and offer is None:
         raise BadInput("choice offer", expected="an offer in yen with it", seen="none")
@@ -195,9 +190,9 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     before = felt_label(assets.feelings, state.feeling)
     quality = appraise(assets.feelings, assets.person, state.feeling, judged)
     feeling = after_line(assets.feelings, assets.person, state.feeling, judged, quality)
-    feeling = add_feelings(assets.person, feeling, known[choice.id].feel)
+    feeling = add_feelings(assets.person, feeling, said.feel)
     counter = state.bargain.round + 1
-    rng = _rng(state.seed, "mark", counter)
+    rng = assets.streams.at(state.seed, "mark", counter)
     outcome: str | None
     if act == "leave":
         bargain = turn_to_go(assets.market, state.bargain, quality)
@@ -206,10 +201,7 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     else:
         label = felt_label(assets.feelings, feeling)
         bargain, answer = play_round(assets.market, state.bargain, Move(act, quality, offer), feeling.felt7, label, rng)
-        outcome = bargain.outcome or {
-            OfferResult.REFUSED: "refused_offer",
-            OfferResult.INSULT: "insulted",
-        }.get(answer.result)
+        outcome = bargain.outcome or _OFFER_OUTCOMES.get(answer.result)
     if answer.result == OfferResult.INSULT:
         feeling = after_insult(assets.feelings, assets.person, feeling, answer.excess)
     elif answer.result == OfferResult.REFUSED and answer.above_lowest >= 0:
@@ -217,7 +209,10 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     deal = choice.offer if bargain.outcome == Outcome.DEAL and choice.offer is not None else 0
     if deal:
         deal = min(deal, ask_money(state.list_price, state.bargain.ask))
-    moved = replace(state, feeling=feeling, bargain=bargain, answer=answer, deal_price=deal)
+    moved = TalkState(
+        state.seed, state.item, state.list_price, state.purse, state.story, feeling, bargain, state.beat,
+        state.visit, deal, answer,
+    )  # fmt: skip
     env = talk_env(
         moved,
         assets,
@@ -230,20 +225,17 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     story, beat = advance(assets.script, state.story, Chose(choice.id, outcome=outcome), env)
     # The option's own `feel:` was added above, before the offer was weighed; the beat brings those of what was said.
     reacted = _with_stimuli(assets, feeling, beat)
-    after = pass_round(assets.feelings, assets.person, reacted, _rng(state.seed, "mood", counter))
-    return replace(
-        moved,
-        story=story,
-        beat=beat,
-        feeling=after,
-        purse=state.purse - deal,
-        record=(
-            ("act", act),
-            ("quality", quality),
-            ("felt_label", before),
-            ("result", answer.result),
-            ("outcome", outcome or ""),
-            ("felt", feeling.felt7),
-            ("shown", shown_emotion(assets.person, feeling)),
-        ),
+    after = pass_round(assets.feelings, assets.person, reacted, assets.streams.at(state.seed, "mood", counter))
+    record = (
+        ("act", act),
+        ("quality", quality),
+        ("felt_label", before),
+        ("result", answer.result),
+        ("outcome", outcome or ""),
+        ("felt", feeling.felt7),
+        ("shown", shown_values(assets.person, feeling)),
     )
+    return TalkState(
+        state.seed, state.item, state.list_price, state.purse - deal, story, after, bargain, beat,
+        state.visit, deal, answer, record,
+    )  # fmt: skip

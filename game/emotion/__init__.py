@@ -11,6 +11,7 @@ from game.emotion.feeling import (
     felt_label,
     pass_round,
     shown_emotion,
+    shown_values,
     start_feeling,
 )
 from game.emotion.rules import FeelingRules, Quality, Temperament, feeling_rules_from, load_feeling_rules
@@ -30,6 +31,7 @@ __all__ = [
     "load_feeling_rules",
     "pass_round",
     "shown_emotion",
+    "shown_values",
     "start_feeling",
     "to_valence_arousal",
 ]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,27 @@ class Temperament:
     sensitivity: Floats
     quality: Mapping[str, tuple[str, ...]]
 
+    # The same as plain floats, for the rules that run in every round.
+    @cached_property
+    def calm(self) -> tuple[float, ...]:
+        """``baseline`` by emotion."""
+        return tuple(self.baseline.tolist())
+
+    @cached_property
+    def hurt_shares(self) -> tuple[float, ...]:
+        """``negative`` by emotion."""
+        return tuple(self.negative.tolist())
+
+    @cached_property
+    def sensitivities(self) -> tuple[float, ...]:
+        """``sensitivity`` by emotion."""
+        return tuple(self.sensitivity.tolist())
+
+    @cached_property
+    def mood_shares(self) -> tuple[float, ...]:
+        """Running sums of ``mood_prior``, the last one 1: where a number in [0, 1) falls is the mood drawn."""
+        return _running_shares(self.mood_prior)
+
 
 @dataclass(frozen=True, eq=False)
 class FeelingRules:
@@ -78,6 +99,21 @@ class FeelingRules:
     turn_size: float
     mask_shows: Floats
     temperaments: Mapping[str, Temperament]
+
+    @cached_property
+    def left_after_a_round(self) -> tuple[float, ...]:
+        """What share of a feeling is left after a round, by emotion."""
+        return tuple(np.exp2(-1.0 / self.half_life_rounds).tolist())
+
+    @cached_property
+    def mask_shares(self) -> tuple[float, ...]:
+        """Running sums of ``mask_shows``, the last one 1."""
+        return _running_shares(self.mask_shows)
+
+
+def _running_shares(weights: Floats) -> tuple[float, ...]:
+    sums = np.cumsum(weights / weights.sum())
+    return tuple((sums / sums[-1]).tolist())
 
 
 def vector_of(node: Node, names: tuple[str, ...], *, default: float | None = None) -> Floats:
@@ -183,15 +219,7 @@ def load_feeling_rules(path: Path = DIALOGUE / "rules.yaml") -> FeelingRules:
     return feeling_rules_from(load_yaml(path))
 
 
-def label_index(felt_six: Floats, threshold: float) -> int:
+def label_index(felt_six: Sequence[float], threshold: float) -> int:
     """Index of the felt label: the largest of the six if at least the threshold, else neutral (6)."""
-    best = int(np.argmax(felt_six))
-    return best if felt_six[best] >= threshold else EMOTION_INDEX["neutral"]
-
-
-def scaled(values: Mapping[str, Any], sensitivity: Floats) -> Floats:
-    """A dialogue line's ``feel: {joy: 0.2}`` as (6,), scaled by a temperament's sensitivity."""
-    out = np.zeros(6)
-    for name, amount in values.items():
-        out[EMOTION_INDEX[name]] = float(amount)
-    return out * sensitivity
+    most = max(felt_six)
+    return felt_six.index(most) if most >= threshold else EMOTION_INDEX["neutral"]

@@ -6,12 +6,12 @@ became of the offer, for the feelings to react to.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from game.core.errors import BadInput
+from game.core.streams import Draws
 from game.market.rules import MarketRules
 
 __all__ = [
@@ -26,8 +26,6 @@ __all__ = [
     "surplus_share",
     "turn_to_go",
 ]
-
-Floats = NDArray[np.float64]
 
 
 class Outcome:
@@ -89,10 +87,11 @@ class Answer:
     tells: bool = False
 
 
-def start_bargain(rules: MarketRules, patience: float, rng: np.random.Generator, *, failed_visits: int = 0) -> Bargain:
+def start_bargain(rules: MarketRules, patience: float, rng: Draws, *, failed_visits: int = 0) -> Bargain:
     """A fresh bargain: the lowest price and the patience are drawn anew on every visit."""
-    lowest = float(rng.uniform(*rules.lowest_price))
-    start = patience + float(rng.normal(0.0, rules.patience_sigma)) - rules.annoyance_on_return * failed_visits
+    low, high = rules.lowest_price
+    lowest = low + (high - low) * rng.random()
+    start = patience + rules.patience_sigma * rng.standard_normal() - rules.annoyance_on_return * failed_visits
     return Bargain(lowest=lowest, ask=1.0, offer=0.0, patience=max(start, 1.0), trust=rules.trust_start)
 
 
@@ -115,8 +114,18 @@ def turn_to_go(rules: MarketRules, bargain: Bargain, quality: str) -> Bargain:
     return replace(bargain, ask=ask, patience=bargain.patience - rules.patience_round, round=bargain.round + 1)
 
 
+_ONES = (1.0,) * 7
+
+
+def weighted(values: Sequence[float], weights: Sequence[float]) -> float:
+    """Sum of seven products, from left to right (``sum`` rounds differently from one Python to the next)."""
+    a, b, c, d, e, f, g = values
+    p, q, r, s, t, u, v = weights
+    return a * p + b * q + c * r + d * s + e * t + f * u + g * v
+
+
 def _concession(
-    rules: MarketRules, bargain: Bargain, move: Move, offer: float, felt7: Floats, label: str, noise: float
+    rules: MarketRules, bargain: Bargain, move: Move, offer: float, felt7: Sequence[float], label: str, noise: float
 ) -> tuple[float, float]:
     """How far the ask falls, and the patience it costs to be held against."""
     raised = offer - bargain.offer
@@ -126,13 +135,13 @@ def _concession(
             0.0 if rate > 0 else rules.unmoved_patience
         ) + rules.patience_small_raise
     step = rules.per_raise * raised if bargain.offer > 0 else rules.first_offer
-    hard = float(felt7 @ rules.hard / felt7.sum())
+    hard = weighted(felt7, rules.hard) / weighted(felt7, _ONES)
     trust = rules.trust_base + rules.trust_slope * bargain.trust
-    return step * rules.quality[move.quality] * hard * trust * float(np.exp(rules.concession_sigma * noise)), 0.0
+    return step * rules.quality[move.quality] * hard * trust * math.exp(rules.concession_sigma * noise), 0.0
 
 
 def play_round(
-    rules: MarketRules, bargain: Bargain, move: Move, felt7: Floats, label: str, rng: np.random.Generator
+    rules: MarketRules, bargain: Bargain, move: Move, felt7: Sequence[float], label: str, rng: Draws
 ) -> tuple[Bargain, Answer]:
     """One round: the line is spoken, the ask falls, the offer is answered, patience and trust change.
 
@@ -144,8 +153,8 @@ def play_round(
         raise BadInput("bargain", expected="a talk that goes on", seen=bargain.outcome)
     if move.offer is not None and not 0.0 < move.offer <= 1.0:
         raise BadInput("offer", expected="a share of the list price above 0, at most 1", seen=move.offer)
-    noise, accept_noise = float(rng.normal()), float(rng.normal())
-    sudden, tidy, tells = (float(x) for x in rng.random(3))
+    noise, accept_noise = rng.standard_normal(), rng.standard_normal()
+    sudden, tidy, tells = rng.random(), rng.random(), rng.random()
 
     patience = bargain.patience - (rules.patience_wait if move.act == "wait" else rules.patience_round)
     trust = bargain.trust
@@ -167,7 +176,7 @@ def play_round(
         fall, cost = _concession(rules, bargain, move, offer, felt7, label, noise)
         patience -= cost
         ask = min(bargain.ask, max(bargain.ask - fall, ask_floor(rules, bargain)))
-        warmth = min(float(felt7 @ rules.soft) + rules.acceptance_trust * trust, rules.acceptance_limit)
+        warmth = min(weighted(felt7, rules.soft) + rules.acceptance_trust * trust, rules.acceptance_limit)
         accept_at = bargain.lowest + (ask - bargain.lowest) * (1.0 - warmth) + rules.acceptance_sigma * accept_noise
         best = max(best, offer)
         # A disgusted seller sells only at the asking price.
@@ -188,9 +197,7 @@ def play_round(
             outcome = Outcome.SUDDEN_END
         elif played >= rules.rounds:
             outcome = Outcome.ROUNDS_OUT
-    after = replace(
-        bargain, ask=ask, offer=best, patience=patience, trust=trust, round=played, outcome=outcome, price=price
-    )
+    after = Bargain(bargain.lowest, ask, best, patience, trust, played, outcome, price)
     return after, Answer(
         result=result,
         excess=excess,

@@ -6,17 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput
 from game.core.paths import DIALOGUE
 from game.formats.yaml_source import Node, load_yaml
 
 __all__ = ["MarketRules", "load_market_rules", "market_rules_from"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +34,8 @@ class MarketRules:
     acceptance_trust: float
     acceptance_limit: float
     acceptance_sigma: float
-    soft: Floats
-    hard: Floats
+    soft: tuple[float, ...]
+    hard: tuple[float, ...]
     lowest_price: tuple[float, float]
     patience_sigma: float
     patience_round: float
@@ -64,9 +59,9 @@ class MarketRules:
     annoyance_on_return: float
 
 
-def _by_emotion(node: Node) -> Floats:
+def _by_emotion(node: Node) -> tuple[float, ...]:
     node.only(*EMOTIONS)
-    return np.array([node[name].as_float(0) for name in EMOTIONS])
+    return tuple(node[name].as_float(0) for name in EMOTIONS)
 
 
 def market_rules_from(root: Node) -> MarketRules:

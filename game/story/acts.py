@@ -45,6 +45,9 @@ class ActTable:
 
     def fair_sets(self, available: Sequence[str], count: int) -> tuple[tuple[str, ...], ...]:
         """Sets of ``count`` acts that are right for at least six of seven emotions, or for as many as is possible."""
+        found = self._fair.get((tuple(available), count))
+        if found is not None:
+            return found
         key = (tuple(act for act in ACTS if act in available), count)
         if key not in self._fair:
             sets = list(itertools.combinations(key[0], min(count, len(key[0]))))

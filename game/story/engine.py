@@ -11,7 +11,8 @@ from game.story.chance import pick_weighted, uniform
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.forms import PERSON_SLOTS, number_text, person_word
-from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, SayDef, Script
+from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, Script
+from game.story.prepared import FIXED_NAMES, ReadyLine, prepared
 from game.story.state import StoryState
 from game.story.text import Text, fill
 from game.story.vocabulary import ENV, OUTCOMES, Value, environment
@@ -88,9 +89,13 @@ class _Run:
         self.chosen = set(state.chosen)
         self.heard = dict(state.heard)
         self.seen = {*state.earlier, *state.said, *state.chosen, *state.visits}
-        self.names: dict[str, Value] = {**environment(env), **state.variables}
+        self.names: dict[str, Value] = environment(env)
+        self.names.update(state.variables)
         self.names["item"] = state.item
         self.names["visit"] = float(state.visit)
+        told = str(self.names["quality"]) if self.names["tells"] else "none"
+        self.told = "veiled" if told == "none" else told
+        self.ready = prepared(script, state.item)
         self.scope = Scope(self.names, self.visits, self.seen)
         self.lines: list[Spoken] = []
         self.stimuli: list[Stimulus] = []
@@ -122,7 +127,7 @@ class _Run:
         """A line that carries an offer is followed by the words of an offer."""
         for choice in self.script.standing:
             if choice.act == "offer":
-                self.say(SayDef(choice.texts, choice.where))
+                self.say([(line, None) for line in choice.texts if self.holds(line)], "weighted")
                 return
 
     def walk(self, target: str, pending: str | None) -> None:
@@ -163,6 +168,8 @@ class _Run:
 
     def resolved(self, target: str) -> str:
         """A node's own name; ``back`` and ``home`` looked up."""
+        if target in self.script.nodes:
+            return target
         while target == BACK or target.startswith("after:"):
             if target == BACK:
                 target = self.returns.pop() if self.returns else HOME
@@ -190,9 +197,11 @@ class _Run:
         self.node = node.id
         self.visits[node.id] = self.visits.get(node.id, 0) + 1
         self.seen.add(node.id)
-        self.apply(node.effects, node.feel, node.id)
-        for say in node.says:
-            self.say(say)
+        if node.effects or node.feel:
+            self.apply(node.effects, node.feel, node.id)
+        for test, order, lines in self.ready.says(node, self.told):
+            if test is None or test(self.scope):
+                self.say(lines, order)
 
     def apply(self, effects: tuple[EffectDef, ...], feel: Mapping[str, float], source: str) -> None:
         for effect in effects:
@@ -201,20 +210,25 @@ class _Run:
             self.stimuli.append(Stimulus(feel, source))
 
     # --- speaking --------------------------------------------------------------------------------------------
-    def say(self, say: SayDef) -> None:
-        if not self.holds(say):
-            return
-        said = self.said
-        fresh = [line for line in say.lines if (line.id not in said or line.again) and self.holds(line)]
-        if not fresh:
-            return
-        # On a later visit, what was said on an earlier one comes last.
-        new = [line for line in fresh if line.id not in self.state.earlier] or fresh
-        if say.order == "shuffled":
-            least = min(self.heard.get(line.id, 0) for line in new)
-            new = [line for line in new if self.heard.get(line.id, 0) == least]
-        pick = len(new) > 1 and say.order != "listed"
-        self.say_line(new[pick_weighted([line.weight for line in new], self.chance())] if pick else new[0])
+    def say(self, lines: Sequence[ReadyLine], order: str) -> None:
+        """One line of those that can be said now."""
+        said, scope = self.said, self.scope
+        fresh = [line for line, test in lines if (line.id not in said or line.again) and (test is None or test(scope))]
+        if len(fresh) > 1:
+            fresh = [self.pick(fresh, order)]
+        if fresh:
+            self.say_line(fresh[0])
+
+    def pick(self, fresh: list[LineDef], order: str) -> LineDef:
+        """By the order of the group; on a later visit, what was said on an earlier one comes last."""
+        if earlier := self.state.earlier:
+            fresh = [line for line in fresh if line.id not in earlier] or fresh
+        if order == "shuffled":
+            least = min(self.heard.get(line.id, 0) for line in fresh)
+            fresh = [line for line in fresh if self.heard.get(line.id, 0) == least]
+        if len(fresh) == 1 or order == "listed":
+            return fresh[0]
+        return fresh[pick_weighted([line.weight for line in fresh], self.chance())]
 
     def say_line(self, line: LineDef) -> None:
         if line.id in self.said and not line.again:
@@ -227,18 +241,21 @@ class _Run:
         if line.feel:
             self.stimuli.append(Stimulus(line.feel, line.id))
 
-    def holds(self, part: SayDef | LineDef) -> bool:
-        if part.when is not None:
-            told = self.names["quality"] if self.names["tells"] else "none"
-            if part.when != ("veiled" if told == "none" else told):
-                return False
-        return part.condition is None or bool(part.condition.evaluate(self.scope))
+    def holds(self, line: LineDef) -> bool:
+        """Whether a line fits how the player's line landed, and its condition holds."""
+        return line.when in (None, self.told) and (line.condition is None or bool(line.condition.evaluate(self.scope)))
 
     def spoken(self, line: LineDef) -> Spoken:
-        text = self.filled(line.text)
-        return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
+        known = self.ready.spoken.get(line.id)
+        if known is None:
+            text = self.filled(line.text)
+            known = Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
+            if line.text.names <= FIXED_NAMES:
+                self.ready.spoken[line.id] = known
+        return known
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
+        """The words with the names in braces filled in, ``keep`` left as it stands."""
         if not text.names or text.names == {keep}:
             return text
 
@@ -252,7 +269,7 @@ class _Run:
                 return self.script.items[self.state.item].name.get(language)
             found = self.names[name]
             if name in ENV and ENV[name].money and not isinstance(found, str):
-                return self.script.currency.text(found).get(language)
+                return self.ready.money(found).get(language)
             if isinstance(found, float):
                 return number_text(found)
             return str(found).lower() if isinstance(found, bool) else found
@@ -272,7 +289,8 @@ class _Run:
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ChoiceDef) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        if choice.once != "never" and choice.id in (self.chosen if choice.once == "talk" else self.seen):
+        once = choice.once
+        if once != "never" and choice.id in (self.chosen if once == "talk" else self.seen):
             return False
         return choice.condition is None or bool(choice.condition.evaluate(self.scope))
 
@@ -282,20 +300,12 @@ class _Run:
 
     def wait_at(self, node: NodeDef) -> bool:
         """Lay the choices of a node on the table; False where none can be taken."""
-        scope, chosen = self.scope, self.chosen
-        pool = [
-            choice
-            for name in node.pools
-            for choice in self.script.pools[name]
-            # What most choices need is asked first, and here: this is the talk's innermost loop.
-            if not (choice.once == "talk" and choice.id in chosen)
-            and (choice.condition is None or choice.condition.evaluate(scope))
-            and (choice.once != "stall" or self.shown(choice))
-            and (choice.needs is None or choice.needs.evaluate(scope))
-        ]
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
-        drawn = draw_choices(pool, node.draw, self.script.acts, self.state.seed ^ _DRAW_STREAM, self.turn * 64)
+        drawn: list[ChoiceDef] = []
+        if node.pools:
+            groups, seed = self.ready.groups(node), self.state.seed ^ _DRAW_STREAM
+            drawn = draw_choices(groups, self.scope, self.chosen, node.draw, self.script.acts, seed, self.turn * 64)
         others = (*node.choices, *self.script.standing) if node.standing else node.choices
         self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *filter(self.shown, others))]
         return bool(drawn) or any(self.usable(choice) for choice, _ in self.offered)
@@ -304,7 +314,11 @@ class _Run:
         """A wording not yet used in this talk, by chance; the first where all were."""
         if len(choice.texts) == 1:
             return choice.texts[0]
-        fresh = [line for line in choice.texts if line.id not in self.said and self.holds(line)]
+        said, plain = self.said, self.ready.wordings(choice)
+        if plain is None:
+            fresh = [line for line in choice.texts if line.id not in said and self.holds(line)]
+        else:
+            fresh = [line for line in plain if line.id not in said]
         if len(fresh) < 2:
             return fresh[0] if fresh else choice.texts[0]
         return fresh[pick_weighted([line.weight for line in fresh], self.chance())]
@@ -313,11 +327,18 @@ class _Run:
         texts = self.script.choices[choice_id].texts
         return next((line for line in texts if line.id == text_id), texts[0])
 
-    def _choice(self, choice: ChoiceDef, line: LineDef) -> Choice:
-        text = self.filled(line.text, keep="offer")
+    def _choice(self, offered: tuple[ChoiceDef, LineDef]) -> Choice:
+        choice, line = offered
+        key = (choice.id, line.id)
         usable = self.usable(choice)
+        if usable and key in self.ready.options:
+            return self.ready.options[key]
+        text = self.filled(line.text, keep="offer")
         reason = None if usable or choice.reason is None else self.filled(choice.reason)
-        return Choice(choice.id, choice.act, text.en, text.ja, usable, reason, choice.feel)
+        made = Choice(choice.id, choice.act, text.en, text.ja, usable, reason, choice.feel)
+        if usable and line.text.names <= {*FIXED_NAMES, "offer"}:
+            self.ready.options[key] = made
+        return made
 
     def result(self) -> tuple[StoryState, Beat]:
         offered = [] if self.ended is not None else self.offered
@@ -339,10 +360,10 @@ class _Run:
             chosen=frozenset(self.chosen),
             heard=self.heard,
             variables={name: self.names[name] for name in self.script.variables},
-            offered=tuple((choice.id, line.id) for choice, line in offered),
-            last_lines=tuple(line.id for line in self.lines),
+            offered=tuple([(choice.id, line.id) for choice, line in offered]),
+            last_lines=tuple([line.id for line in self.lines]),
         )
-        choices = tuple(self._choice(choice, line) for choice, line in offered)
+        choices = tuple([self._choice(pair) for pair in offered])
         return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended, self.timer(choices))
 
     def timer(self, choices: Sequence[Choice]) -> Timer | None:

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from game.core.errors import Where
 from game.story.acts import ActTable
 from game.story.expressions import Expression, Names
 from game.story.text import Pronoun, Text
 from game.story.vocabulary import Type, Value
+
+if TYPE_CHECKING:
+    from game.story.prepared import Prepared
 
 __all__ = [
     "BACK",
@@ -189,7 +192,7 @@ class NodeDef:
     feel: Mapping[str, float]
     timer: TimerDef | None = None
 
-    @property
+    @cached_property
     def waits(self) -> bool:
         """Whether the talk stops here for the player."""
         return bool(self.choices or self.pools)
@@ -250,6 +253,11 @@ class Script:
                 yield from say.lines
         for choice in self.all_choices():
             yield from choice.texts
+
+    @cached_property
+    def tables(self) -> dict[str, Prepared]:
+        """By item, what ``game.story.prepared`` has worked out; empty at first."""
+        return {}
 
     @cached_property
     def lines(self) -> Mapping[str, LineDef]:

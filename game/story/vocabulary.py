@@ -100,20 +100,20 @@ def environment(env: Mapping[str, Value]) -> dict[str, Value]:
         kind = _KINDS.get(name)
         if kind is None:
             continue
-        try:
-            if kind == "text":
-                if not isinstance(value, str):
-                    raise TypeError
-                out[name] = value
-            elif kind == "bool":
-                out[name] = bool(value)
-            else:
+        if kind == "number":
+            try:
                 number = float(value)
-                if not math.isfinite(number):
-                    raise TypeError
-                out[name] = number
-        except (TypeError, ValueError):
-            raise BadInput(f"the name {name}", expected=f"a {kind}", seen=value) from None
+            except (TypeError, ValueError):
+                number = math.nan
+            if not math.isfinite(number):
+                raise BadInput(f"the name {name}", expected="a number", seen=value)
+            out[name] = number
+        elif kind == "bool":
+            out[name] = bool(value)
+        elif isinstance(value, str):
+            out[name] = value
+        else:
+            raise BadInput(f"the name {name}", expected="a text", seen=value)
     return out
 
 

@@ -35,7 +35,7 @@ def feel(**values: float) -> Feeling:
     felt = np.zeros(6)
     for name, value in values.items():
         felt[EMOTION_INDEX[name]] = value
-    return Feeling(felt=felt, mask_shows=JOY)
+    return Feeling(six=tuple(felt.tolist()), mask_shows=JOY)
 
 
 def test_a_joke_warms_the_happy_and_insults_the_angry() -> None:
@@ -59,7 +59,7 @@ def test_a_right_line_repeated_at_once_is_only_neutral_and_pressing_works_once()
     assert appraise(RULES, STUDENT, other, "joke") == "right"
     pressed = after_line(RULES, STUDENT, feel(fear=0.8), "press", "right")
     talked = after_line(RULES, STUDENT, pressed, "small_talk", "right")
-    assert appraise(RULES, STUDENT, replace(talked, felt=feel(fear=0.8).felt), "press") == "neutral"
+    assert appraise(RULES, STUDENT, replace(talked, six=feel(fear=0.8).six), "press") == "neutral"
 
 
 def test_right_lines_calm_and_wrong_lines_hurt_by_the_profile() -> None:
@@ -121,10 +121,10 @@ def test_the_label_needs_its_threshold() -> None:
 )
 def test_feelings_stay_in_the_emotion_space(values, change, person, act, seed) -> None:
     who = RULES.temperaments[person]
-    feeling = add_feelings(who, Feeling(np.array(values), JOY), change)
+    feeling = add_feelings(who, Feeling(tuple(values), JOY), change)
     feeling = after_line(RULES, who, feeling, act, appraise(RULES, who, feeling, act))
     feeling = pass_round(RULES, who, feeling, np.random.default_rng(seed))
-    for vector in (feeling.felt7, shown_emotion(who, feeling)):
+    for vector in (np.array(feeling.felt7), shown_emotion(who, feeling)):
         assert np.all((vector >= 0) & (vector <= 1))
     assert np.all(np.abs(to_valence_arousal(feeling.felt7)) <= 1)
 

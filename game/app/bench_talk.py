@@ -1,0 +1,104 @@
+"""Choices per second: the story engine against inkjs on the same talk, and the whole negotiation."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+from game.app.autoplay import play_episode
+from game.app.bench_rows import Row, row
+from game.app.content import load_talk_assets, stall_path
+from game.app.policies import POLICIES
+from game.core.errors import BadInput
+from game.core.paths import ASSETS
+from game.story import Chose, Script, Start, advance, begin, load_script
+
+__all__ = ["rows"]
+
+TALK = ASSETS / "bench" / "ten_choices.yaml"
+INK = ASSETS / "bench" / "ten_choices.ink"
+REPEATS, TALKS = 7, 60
+
+# The same draws, the same count: random choices until nothing can be chosen any more.
+_NODE = """
+const fs = require('fs'), load = require('module').createRequire(process.argv[2]);
+const {Compiler} = load('inkjs/full'), {Story} = load('inkjs');
+const story = new Story(new Compiler(fs.readFileSync(process.argv[3], 'utf8')).Compile().ToJson());
+let seed = 1;
+const draw = n => { seed = (seed * 1103515245 + 12345) % 2147483648; return Math.floor(seed / 2147483648 * n); };
+function play() {
+  story.ResetState();
+  for (let made = 0;; made++) {
+    while (story.canContinue) story.Continue();
+    if (!story.currentChoices.length) return made;
+    story.ChooseChoiceIndex(draw(story.currentChoices.length));
+  }
+}
+const talks = +process.argv[5], rates = [];
+for (let i = 0; i < talks; i++) play();
+for (let r = 0; r < +process.argv[4]; r++) {
+  const begun = process.hrtime.bigint();
+  let made = 0;
+  for (let i = 0; i < talks; i++) made += play();
+  rates.push(made / (Number(process.hrtime.bigint() - begun) / 1e9));
+}
+console.log(JSON.stringify(rates));
+"""
+
+
+def inkjs_rates(folder: Path) -> list[float]:
+    """Choices per second of inkjs. folder: where ``npm install inkjs`` was run. Raises BadInput without it or node."""
+    node, package = shutil.which("node"), folder.resolve() / "node_modules" / "inkjs"
+    if node is None:
+        raise BadInput("--inkjs", expected="node on the PATH", seen="none")
+    if not (package / "package.json").is_file():
+        raise BadInput("--inkjs", expected="a folder where `npm install inkjs` was run", seen=str(folder))
+    command = [node, "-e", _NODE, "bench", str(package / "package.json"), str(INK), str(REPEATS), str(TALKS)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+    if done.returncode:
+        raise BadInput("--inkjs", expected="a run of inkjs", seen=(done.stderr.strip().splitlines() or ["nothing"])[-1])
+    return [float(rate) for rate in json.loads(done.stdout)]
+
+
+def story_choices(script: Script, first_seed: int) -> int:
+    """Play ``TALKS`` talks of the bench script, a fixed draw at every choice; how many choices were made."""
+    made, draw = 0, 1
+    for seed in range(first_seed, first_seed + TALKS):
+        state, beat = advance(script, begin(script, "cup", seed), Start(), {})
+        while beat.ended is None:
+            draw = (draw * 1103515245 + 12345) % 2147483648
+            choice = beat.choices[draw * 4 // 2147483648]
+            state, beat = advance(script, state, Chose(choice.id), {})
+            made += 1
+    return made
+
+
+def rows(inkjs: Path | None) -> list[Row]:
+    """The table's rows; with a folder of inkjs the first one has it as its floor, measured in the same run."""
+    script = load_script(TALK)
+    story_choices(script, 0)
+    rates = []
+    for repeat in range(REPEATS):
+        begun = time.perf_counter()
+        made = story_choices(script, repeat * TALKS)
+        rates.append(made / (time.perf_counter() - begun))
+    ink = None if inkjs is None else sorted(inkjs_rates(inkjs))[REPEATS // 2]
+    found = [row("autoplay: story engine, ten-choice talk (floor: inkjs), choices/s", rates, unit="/s", floor=ink,
+                 more_is_better=True)]  # fmt: skip
+    assets = load_talk_assets(stall_path("flea"))
+    for policy in ("random", "oracle"):
+        per_choice, per_talk = [], []
+        for repeat in range(REPEATS):
+            begun = time.perf_counter()
+            talks = [list(play_episode(assets, POLICIES[policy], 1, repeat * TALKS + i)) for i in range(TALKS)]
+            seconds = time.perf_counter() - begun
+            per_choice.append(sum(map(len, talks)) / seconds)
+            per_talk.append(TALKS / seconds)
+        found.append(row(f"autoplay: whole negotiation, {policy}, choices/s", per_choice[1:], unit="/s",
+                         more_is_better=True))  # fmt: skip
+        found.append(row(f"autoplay: whole negotiation, {policy}, episodes/s", per_talk[1:], unit="/s",
+                         more_is_better=True))  # fmt: skip
+    return found

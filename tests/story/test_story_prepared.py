@@ -1,0 +1,68 @@
+"""What is worked out beforehand for an item must be what asking every condition in the talk would have given."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+
+from game.core.paths import DIALOGUE
+from game.core.streams import Streams
+from game.story import Chose, Start, advance, begin, load_script
+from game.story.expressions import Scope
+from game.story.prepared import prepared
+
+
+def test_tables_leave_out_only_what_can_never_hold_for_the_item() -> None:
+    script = load_script(DIALOGUE / "flea.yaml")
+    rng = random.Random(3)
+    narrowed = 0
+    for item in script.items:
+        tables = prepared(script, item)
+        assert prepared(script, item) is tables
+        names = {name: known.initial for name, known in script.variables.items()}
+        names |= {"item": item, "round": 3.0, "offer_result": "none", "visit": 1.0}
+        for node in script.nodes.values():
+            for told in ("right", "wrong", "neutral", "veiled"):
+                kept = {line.id for _, _, lines in tables.says(node, told) for line, _ in lines}
+                for _ in range(2):
+                    seen = {i for i in script.lines if rng.random() < 0.4}
+                    seen |= {i for i in script.choices if rng.random() < 0.4}
+                    scope = Scope(names, {}, seen)
+                    for say in node.says:
+                        for line in say.lines:
+                            conditions = [c for c in (say.condition, line.condition) if c is not None]
+                            if any(not c.names <= names.keys() for c in conditions):
+                                continue
+                            fits = say.when in (None, told) and line.when in (None, told)
+                            if fits and all(c.evaluate(scope) for c in conditions):
+                                assert line.id in kept
+                narrowed += sum(len(say.lines) for say in node.says) - len(kept)
+    assert narrowed > 1000
+
+
+def test_a_talk_about_one_item_after_another_keeps_their_words_apart() -> None:
+    """The tables belong to an item: nothing of one item's words turns up in a talk about another."""
+    script = load_script(DIALOGUE / "flea.yaml")
+    for item, other in (("cups", "vase"), ("vase", "cups")):
+        for seed in range(12):
+            state, beat = advance(script, begin(script, item, seed), Start(), {"list_price": 1200.0})
+            words = " ".join(line.en for line in beat.lines)
+            for choice in beat.choices:
+                if choice.id not in {"offer", "wait", "leave"}:
+                    _, after = advance(script, state, Chose(choice.id), {"list_price": 1200.0})
+                    words += " ".join(line.en for line in after.lines)
+            assert script.items[other].name.en not in words
+
+
+def test_streams_give_what_a_generator_of_their_own_would() -> None:
+    streams = Streams()
+    for seed, purpose, counter in ((1, "mood", 0), (2**31 - 1, "market", 5), (1, "mood", 1), (1, "mood", 0)):
+        name = int.from_bytes(purpose.encode()[:4], "big")
+        alone = np.random.Generator(np.random.Philox(key=seed << 64 | name << 32 | counter))
+        given = streams.at(seed, purpose, counter)
+        assert [given.random(), given.standard_normal(), given.random()] == [
+            alone.random(),
+            alone.standard_normal(),
+            alone.random(),
+        ]
