@@ -25,6 +25,7 @@ from game.render.model import (
     merge_static,
     on_legs,
 )
+from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
 
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
 
@@ -59,17 +60,27 @@ def load_character(vrm: Path) -> CharacterModel:
 
 
 def load_stall(path: Path) -> StaticMesh:
-    """Read a stall's .glb: one node per group, items with their anchor. Raises BadInput."""
+    """Read a stall's .glb: one node per group, items with their anchor, what sways with its pivots. Raises BadInput."""
     file = read_gltf(path)
     parts: list[Part] = []
     anchors: dict[str, tuple[float, float, float]] = {}
+    things: list[tuple[Part, Motion, NDArray[np.floating[Any]]]] = []
     for node, extras in _mesh_nodes(file):
         group = str(extras.get("group", node.name))
         if "anchor" in extras:
             x, y, z = (float(v) for v in extras["anchor"])
             anchors[group] = (x, y, z)
-        parts += [_part(file, primitive, group) for primitive in _primitives(file, node)]
-    return merge_static(parts, anchors)
+        motion = read_motion(extras, Where(path, pointer=f"/nodes/{file.node_index.get(node.name, 0)}/extras"))
+        for primitive in _primitives(file, node):
+            part = _part(file, primitive, group)
+            bulbs = hanging_bulbs(part) if motion is None else None
+            if bulbs is not None:
+                things.append(bulbs)
+            elif motion is not None and "_PIVOT" in primitive.attributes:
+                things.append((part, motion, _floats(primitive.attributes["_PIVOT"])))
+            else:
+                parts.append(part)
+    return merge_static(parts, anchors, moving_meshes(things))
 
 
 def load_picture(path: Path) -> NDArray[np.uint8]:

@@ -22,11 +22,13 @@ _MARGIN_PX = 6  # outline, feather and rounding outside the mesh's own box
 class CharacterDrawing(Owner):
     """Buffers and programs of one person at one quality level.
 
+    lamps: the first of a vertex's extras is how much it glows when the lamps are on.
+
     Per frame: ``pose`` (joint matrices), ``cast`` (shadow map), ``draw`` (colour), ``draw_over`` (brows over the hair).
     The Frame block must be bound; the face texture is given to the draw calls.
     """
 
-    def __init__(self, device: Device, model: CharacterModel, level: Level) -> None:
+    def __init__(self, device: Device, model: CharacterModel, level: Level, *, lamps: bool = False) -> None:
         super().__init__()
         self._context, self._nowhere = device.context, device.nowhere
         self._mesh = mesh = model.mesh(level.triangles)
@@ -45,10 +47,12 @@ class CharacterDrawing(Owner):
         )
         self._whole = True
         self._make_skinning(device, mesh)
-        self._make_drawing(device, mesh, level)
+        self._make_drawing(device, mesh, level, lamps)
         self._make_outline(device, mesh)
         self._make_over(device, mesh)
-        self._make_shadow(device, model.shadow, level)
+        self.shadow_map: moderngl.Texture | None = None
+        if model.shadow is not None:
+            self._make_shadow(device, model.shadow, level)
 
     def _buffer(self, array: NDArray[np.generic]) -> moderngl.Buffer:
         return self.own(self._context.buffer(np.ascontiguousarray(array)))
@@ -69,7 +73,7 @@ class CharacterDrawing(Owner):
         )
         self._captured = [self.own(device.context.buffer(reserve=count * 16)) for _ in range(4)]
 
-    def _make_drawing(self, device: Device, mesh: CharacterMesh, level: Level) -> None:
+    def _make_drawing(self, device: Device, mesh: CharacterMesh, level: Level, lamps: bool) -> None:
         clip, terms, place, _ = self._captured
         self._palette = self._buffer(mesh.palette)
         self._extra = self._buffer(mesh.extra)
@@ -77,6 +81,7 @@ class CharacterDrawing(Owner):
         self._draws: list[tuple[moderngl.VertexArray, Run]] = []
         for run in mesh.runs:
             flags = {name: int(_CLASSES[run.kind] == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS")}
+            flags["LAMP"] = int(lamps)
             program = self.own(
                 device.program(
                     "character.vert.glsl",
@@ -206,13 +211,15 @@ class CharacterDrawing(Owner):
         self._caster.render(vertices=3 * (self._shadow_triangles if self._whole else self._shadow_above))
         context.cull_face = "back"
 
-    def draw(self, face: moderngl.Texture) -> None:
-        """Shade and outline into the bound framebuffer."""
+    def draw(self, face: moderngl.Texture | None = None) -> None:
+        """Shade and outline into the bound framebuffer; ``face`` for meshes that have one."""
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         context.depth_func = "<"
-        self.shadow_map.use(1)
-        face.use(2)
+        if self.shadow_map is not None:
+            self.shadow_map.use(1)
+        if face is not None:
+            face.use(2)
         runs = [(array, run.first, run.count) for array, run in self._draws if self._whole or run.group == "above"]
         corners = 4 * (len(self._mesh.edges.adjacency) if self._whole else self._mesh.above.edges)
         if self._finders is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,9 @@ from numpy.typing import NDArray
 from game.core.errors import BadInput
 from game.render.grading import palette_bytes
 from game.render.silhouette import Edges, find_edges
+
+if TYPE_CHECKING:
+    from game.render.moving import MovingMesh
 
 __all__ = [
     "KINDS",
@@ -28,6 +32,7 @@ __all__ = [
     "merge_character",
     "merge_static",
     "on_legs",
+    "turned_outward",
 ]
 
 Floats = NDArray[np.float32]
@@ -117,7 +122,7 @@ class CharacterModel:
 
     name: str
     meshes: Mapping[int, CharacterMesh]
-    shadow: ShadowMesh
+    shadow: ShadowMesh | None  # None casts no shadow
     joint_count: int
 
     def mesh(self, triangles: int) -> CharacterMesh:
@@ -137,6 +142,7 @@ class StaticMesh:
     triangle: NDArray[np.int32]
     runs: tuple[Run, ...]
     anchors: Mapping[str, tuple[float, float, float]]  # group of an item -> centre of its foot on the table, m
+    moving: tuple[MovingMesh, ...] = ()  # what sways and spins
 
     @property
     def groups(self) -> frozenset[str]:
@@ -259,9 +265,13 @@ def on_legs(
     return result
 
 
-def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float, float]]) -> StaticMesh:
-    """Join parts that never move."""
-    parts = [replace(part, triangle=_turned(part)) for part in _ordered(parts)]
+def merge_static(
+    parts: Sequence[Part],
+    anchors: Mapping[str, tuple[float, float, float]],
+    moving: tuple[MovingMesh, ...] = (),
+) -> StaticMesh:
+    """Join parts that never move; ``moving`` is handed through."""
+    parts = [replace(part, triangle=turned_outward(part)) for part in _ordered(parts)]
     triangle, runs = _join(parts)
     mesh = StaticMesh(
         np.concatenate([p.position for p in parts]),
@@ -271,13 +281,14 @@ def merge_static(parts: Sequence[Part], anchors: Mapping[str, tuple[float, float
         triangle,
         runs,
         MappingProxyType(dict(anchors)),
+        moving,
     )
     for array in (mesh.position, mesh.normal, mesh.outline, mesh.palette, triangle):
         array.setflags(write=False)
     return mesh
 
 
-def _turned(part: Part) -> NDArray[np.uint32]:
+def turned_outward(part: Part) -> NDArray[np.uint32]:
     """The part's triangles, those turned about that wind against their normals: back faces are not drawn."""
     a, b, c = (part.position[part.triangle[:, i]].astype(np.float64) for i in range(3))
     wrong = (np.cross(b - a, c - a) * part.normal[part.triangle].sum(axis=1)).sum(axis=1) < 0.0

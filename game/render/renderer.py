@@ -18,6 +18,7 @@ from game.render.levels import DEFAULT, Level
 from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
 from game.render.model import CharacterModel, StaticMesh
 from game.render.motes import Motes
+from game.render.moving_drawing import MovingDrawing
 from game.render.scene_drawing import BakeKey, SceneDrawing
 from game.render.targets import Box, FrameTargets, copy_box, union
 from game.render.text import FontSet
@@ -69,6 +70,8 @@ class Renderer(Owner):
         self._canvas: _Canvas | None = None
         self._character: CharacterDrawing | None = None
         self._painter: FacePainter | None = None
+        self._moving: MovingDrawing | None = None
+        self._moving_meshes = stall.moving if stall is not None else ()
         # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
         self.drafts = device.windowed
         self._frames = 0
@@ -84,13 +87,15 @@ class Renderer(Owner):
         if self._model is not None:
             self._character = CharacterDrawing(self.device, self._model, level)
             self._painter = FacePainter(self.device, level.face_size)
+        if self._moving_meshes:
+            self._moving = MovingDrawing(self.device, self._moving_meshes, level)
 
     def _drop_level(self) -> None:
         self.device.nowhere.use()
-        for part in (self._canvas.targets if self._canvas else None, self._character, self._painter):
+        for part in (self._canvas.targets if self._canvas else None, self._character, self._painter, self._moving):
             if part is not None:
                 part.release()
-        self._canvas = self._character = self._painter = None
+        self._canvas = self._character = self._painter = self._moving = None
         self._light = self._shown = None
 
     def release(self) -> None:
@@ -142,6 +147,9 @@ class Renderer(Owner):
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
+        if self._moving is not None and view.show_stall:
+            self._draw_moving(view, self._moving, targets)
+            changed = (0, 0, *targets.size)
         if self._character is not None and self._painter is not None:
             self._paint_face(view, self._painter, targets.size)
             canvas.last_box = self._draw_character(view, self._character, self._painter, targets)
@@ -165,6 +173,11 @@ class Renderer(Owner):
         self._scene.bake(key, canvas.targets.bake, self.level.line_px, self._lights, draft=draft)
         canvas.baked, canvas.is_draft = key, draft
         return True
+
+    def _draw_moving(self, view: FrameView, moving: MovingDrawing, targets: FrameTargets) -> None:
+        world_to_clip = self._frame.write(view.camera, self._lights, TABLE_LIGHT, targets.size, self.level.line_px)
+        moving.draw(targets.work, view.time_s, world_to_clip, targets.size)
+        moving.draw_halos(targets.work, self._lights.day.lamps)
 
     def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
         tan_half = view.camera.tan_half_height(size[0] / size[1])
@@ -197,6 +210,7 @@ class Renderer(Owner):
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = PREMULTIPLIED
         targets.work.depth_mask = False
+        assert character.shadow_map is not None, "a person casts a shadow"
         character.shadow_map.use(1)
         targets.bake.dark.texture.use(3)
         receiver = self._scene.receiver(view.show_stall, self.level.shadow_taps, self.level.shadow_size)

@@ -1,12 +1,12 @@
 // One program per material class: branches on a flag would cost all sides of it on a software rasteriser.
 #include "toon.glsl"
-#needs SKIN FACE HAIR GLOSS
+#needs SKIN FACE HAIR GLOSS LAMP
 in vec4 v_terms;
 in vec4 v_shadow;
 flat in vec3 v_lit;
 flat in vec3 v_shade;
 flat in vec3 v_deep;
-#if FACE || HAIR
+#if FACE || HAIR || LAMP
 in vec4 v_extra;
 #endif
 #if FACE
@@ -38,6 +38,10 @@ void main() {
 #if FACE
     vec4 ink = texture(face_texture, v_extra.xy) * v_extra.z;
     c = c * (1.0 - ink.a) + ink.rgb * mix(vec3(0.90, 0.84, 0.90), vec3(1.0), max(lit_share, 0.35)) * mix(vec3(1.0), tint_lit.rgb, 0.5);
+#endif
+#if LAMP
+    float glow = v_extra.x * tint_lit.w;
+    c = mix(c, mix(vec3(1.0, 0.80, 0.42), vec3(1.0, 0.96, 0.82), sat(h * 1.6 - 0.4)), glow);
 #endif
     colour = vec4(rims(c, v_terms.y, v_terms.z, SKIN + FACE > 0 ? 0.41 : 0.75), 1.0);
 }
