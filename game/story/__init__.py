@@ -4,6 +4,7 @@ from game.story.acts import ActTable, load_acts
 from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Timer
 from game.story.engine import advance, resume
 from game.story.findings import CODES, Finding, Findings
+from game.story.fix import fix_file
 from game.story.lint import lint_files
 from game.story.model import Item, NodeDef, Person, Script
 from game.story.reader import load_script, shipped_stalls
@@ -11,6 +12,7 @@ from game.story.state import Memory, StoryState, afternoon_of, begin, memory_of,
 from game.story.surroundings import load_person
 from game.story.text import Text, wrap
 from game.story.timing import TimedText, TimedWord
+from game.story.translations import write_lock
 from game.story.vocabulary import ACTS, ENV, OUTCOMES, STANDING_ACTS
 
 __all__ = [
@@ -43,6 +45,7 @@ __all__ = [
     "advance",
     "afternoon_of",
     "begin",
+    "fix_file",
     "lint_files",
     "load_acts",
     "load_person",
@@ -53,4 +56,5 @@ __all__ = [
     "save",
     "shipped_stalls",
     "wrap",
+    "write_lock",
 ]

@@ -52,6 +52,9 @@ CODES: dict[str, str] = {
     "W_UNREACHABLE": "a node that nothing leads to",
     "W_ENDING_FALLS_BACK": "an outcome that ends the talk, but leads back into it",
     "W_NEVER": "a condition that can never hold",
+    "W_NEVER_DRAWN": "choices whose act is never among the lines that are drawn",
+    "W_UNWINNABLE": "no deal can ever be struck, or not for this thing",
+    "W_STALE_TRANSLATION": "the English was changed after the Japanese was written",
     "W_UNUSED": "a pool, variable or ending that nothing uses",
     "W_UNKNOWN_VALUE": "a comparison with a value the name never has",
     "W_FEW_CHOICES": "a hub with fewer choices than are drawn, or too few kinds of them",
@@ -61,6 +64,7 @@ CODES: dict[str, str] = {
     "W_FALLS_THROUGH": "a list of ways on whose last one has a condition",
     "W_SILENT_REACTION": "a reaction with nothing to say for some way the line can land",
     "I_NOT_INCLUDED": "a part that no stall beside it includes",
+    "I_NOT_LOCKED": "a stall that translations.lock.yaml does not know yet",
     "I_ALWAYS": "a condition that always holds",
 }
 

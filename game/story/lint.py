@@ -15,6 +15,7 @@ from game.story.quality import check_quality
 from game.story.reader import is_stall, read_script
 from game.story.source import Source
 from game.story.surroundings import load_faces, load_person
+from game.story.translations import read_lock
 
 __all__ = ["dialogue_files", "lint_files", "lint_text"]
 
@@ -36,8 +37,11 @@ def dialogue_files(paths: Iterable[Path]) -> list[Path]:
     return list(out)
 
 
-def lint_files(paths: Iterable[Path]) -> list[Finding]:
-    """Findings of all dialogue files at and below some paths, by file and place."""
+def lint_files(paths: Iterable[Path], purse: int | None = None) -> list[Finding]:
+    """Findings of all dialogue files at and below some paths, by file and place.
+
+    purse: what the player can spend in an afternoon, to find what nobody can buy.
+    """
     findings = Findings()
     parts: list[tuple[Path, str]] = []
     for path in dialogue_files(paths):
@@ -49,7 +53,7 @@ def lint_files(paths: Iterable[Path]) -> list[Finding]:
         if _kind(text) == "part":
             parts.append((path, text))
         else:
-            lint_text(path, text, findings)
+            lint_text(path, text, findings, purse)
     known = {path.resolve() for path in findings.files}
     for path, text in parts:
         if path.resolve() not in known:
@@ -63,7 +67,7 @@ def _kind(text: str) -> str:
     for key, kind in (("stall", "stall"), ("part", "part"), ("nodes", "stall")):
         if key in keys:
             return kind
-    return next((key for key in ("person", "faces", "acts") if key in keys), "stall")
+    return next((key for key in ("person", "faces", "acts", "locked") if key in keys), "stall")
 
 
 def _lint_part(path: Path, text: str, findings: Findings) -> None:
@@ -72,8 +76,8 @@ def _lint_part(path: Path, text: str, findings: Findings) -> None:
     for folder in path.absolute().parents[:_STALLS_ABOVE]:
         for stall in sorted(folder.glob("*.yaml")):
             of_stall = Findings()
-            if is_stall(stall):
-                lint_text(stall, decode_utf8(stall.read_bytes(), stall), of_stall)
+            if is_stall(stall) and "include" in (whole := decode_utf8(stall.read_bytes(), stall)):
+                lint_text(stall, whole, of_stall)
             if any(file.resolve() == path.resolve() for file in of_stall.files):
                 found = True
                 for finding in of_stall.all:
@@ -87,19 +91,21 @@ def _lint_part(path: Path, text: str, findings: Findings) -> None:
             findings.add("I_NOT_INCLUDED", source.root.where, "no stall includes this part; its lines are not checked")
 
 
-def lint_text(path: Path, text: str, findings: Findings) -> None:
+def lint_text(path: Path, text: str, findings: Findings, purse: int | None = None) -> None:
     """Check one file's text; ``path`` tells which kind of file it is and where the others stand."""
     kind = _kind(text)
     if kind == "person":
         _check(path, text, findings, lambda: load_person(path))
     elif kind == "faces":
         _check(path, text, findings, lambda: load_faces(path))
+    elif kind == "locked":
+        _check(path, text, findings, lambda: read_lock(path))
     elif kind == "acts":
         _check(path, text, findings, lambda: _all_temperaments(path))
     else:
         script = read_script(path, findings, text)
         if script is not None:
-            check_quality(script, findings)
+            check_quality(script, findings, purse)
 
 
 def _check(path: Path, text: str, findings: Findings, read: Callable[[], object]) -> None:

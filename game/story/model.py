@@ -213,6 +213,7 @@ class Script:
 
     stall: str
     path: str
+    where: Where
     files: tuple[str, ...]
     title: Text
     person: Person
@@ -229,6 +230,8 @@ class Script:
     faces: Mapping[str, Mapping[str, float]]
     acts: ActTable
     names: Names
+    lowest_share: float = 0.0
+    """The least a thing can cost, as a share of its list price (rules.yaml)."""
 
     def choices_at(self, node: NodeDef) -> Iterator[ChoiceDef]:
         """Every choice that can be offered at a node: drawn, fixed and standing."""

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
+
 from game.story.checks import plain_targets
 from game.story.findings import Findings
-from game.story.model import BACK, HOME, Script
+from game.story.model import BACK, HOME, NodeDef, Script
 from game.story.reach import Reach, choice_conditions, conditions_of, lines_by_way
+from game.story.search import Search
 from game.story.text import slots
+from game.story.translations import check_translations
 from game.story.vocabulary import ENV, OUTCOMES, STANDING_ACTS, WHEN
+from game.story.winnable import check_winnable
 
 __all__ = ["check_quality"]
 
@@ -24,13 +29,17 @@ _HIDES_WAYS = frozenset(
 )
 
 
-def check_quality(script: Script, findings: Findings) -> None:
-    """Warnings and remarks about one script."""
+def check_quality(script: Script, findings: Findings, purse: int | None = None) -> None:
+    """Warnings and remarks about one script. purse: what the player can spend, for what costs more than that."""
     if not any(finding.code in _HIDES_WAYS for finding in findings.all if finding.where.path in script.files):
         reach = Reach(script)
         _conditions(script, reach, findings)
+        _never_drawn(script, reach, findings)
         _unreached(script, reach, findings)
         _unused(script, findings)
+        check_winnable(script, reach, findings, purse)
+        _ways_tell(script, findings)
+    check_translations(script, findings)
     _outcomes_end(script, findings)
     _hubs(script, findings)
     _reactions(script, findings)
@@ -38,12 +47,40 @@ def check_quality(script: Script, findings: Findings) -> None:
 
 
 def _conditions(script: Script, reach: Reach, findings: Findings) -> None:
+    search = Search(script, reach)
     for condition in conditions_of(script):
         expression = condition.expression
         if not reach.holds(expression):
             findings.add("W_NEVER", condition.where, f"never true: {expression.source!r}, for {condition.what}")
+        elif not search.holds(expression):
+            message = f"true in no state that a talk can reach: {expression.source!r}, for {condition.what}"
+            findings.add("W_NEVER", condition.where, message)
         elif not reach.fails(expression):
             findings.add("I_ALWAYS", condition.where, f"always true: {expression.source!r}, for {condition.what}")
+
+
+def _never_drawn(script: Script, reach: Reach, findings: Findings) -> None:
+    """Choices of a pool whose act stands in no set of lines that may be drawn, whatever else is used up by then."""
+    hubs = [node for node in script.nodes.values() if node.id in reach.nodes and node.pools and node.draw]
+    for name, choices in script.pools.items():
+        drawing = [node for node in hubs if name in node.pools]
+        for act in dict.fromkeys(choice.act for choice in choices) if drawing else ():
+            if not any(_can_be_drawn(script, act, node) for node in drawing):
+                first = next(choice for choice in choices if choice.act == act)
+                others = "the others are right for more feelings without it"
+                findings.add("W_NEVER_DRAWN", first.where, f"no line of the act {act!r} is ever drawn", others)
+
+
+def _can_be_drawn(script: Script, act: str, node: NodeDef) -> bool:
+    pool = [choice for name in node.pools for choice in script.pools.get(name, ())]
+    lasting = {c.act for c in pool if c.once == "never" and c.condition is None and c.needs is None}
+    passing = [other for other in dict.fromkeys(c.act for c in pool) if other not in lasting and other != act]
+    for size in range(len(passing), -1, -1):
+        for there in itertools.combinations(passing, size):
+            available = tuple({*lasting, *there, act})
+            if any(act in acts for acts in script.acts.fair_sets(available, node.draw)):
+                return True
+    return False
 
 
 def _unreached(script: Script, reach: Reach, findings: Findings) -> None:
@@ -114,6 +151,40 @@ def _hubs(script: Script, findings: Findings) -> None:
                     expression.where,
                     f"the choice {choice.id!r} is on offer by {', '.join(leaks)}: it tells what is felt",
                 )
+
+
+def _ways_tell(script: Script, findings: Findings) -> None:
+    """Ways that part by how a line landed and wait at different places tell it, even where her words do not."""
+    nodes = script.nodes.values()
+    lists = [node.to for node in nodes] + [choice.to for choice in script.all_choices()]
+    hidden = {name for name, known in ENV.items() if known.hidden}
+    for branches in lists:
+        asked = [b for b in branches if b.condition is not None and b.condition.names & hidden]
+        asked = [b for b in asked if b.condition is not None and "tells" not in b.condition.names]
+        if asked and len({frozenset(_waits_after(script, branch.target)) for branch in branches}) > 1:
+            findings.add(
+                "W_LEAK",
+                asked[0].where,
+                "where the talk waits next tells how the line landed, even where her words hide it",
+                "lead back to the same place, or ask for `tells` too",
+            )
+
+
+def _waits_after(script: Script, target: str) -> set[str]:
+    """The places where a talk can wait next after going to a node."""
+    queue, done, waits = [target], set(), set()
+    while queue:
+        name = queue.pop()
+        name = script.home if name == HOME else name
+        if name in done:
+            continue
+        done.add(name)
+        node = script.nodes.get(name)
+        if node is None or node.waits or node.end is not None:
+            waits.add(name)
+        else:
+            queue.extend(branch.target for branch in node.to)
+    return waits
 
 
 def _reactions(script: Script, findings: Findings) -> None:

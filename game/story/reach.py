@@ -152,6 +152,16 @@ class Reach:
             return True
         return any(scope is None or bool(expression.evaluate(scope)) == wanted for scope in self._scopes(expression))
 
+    def values_of(self, kind: str, name: str, expression: Expression) -> Sequence[Value] | None:
+        """What a name of an expression may be (kind: variable, visits or seen); None where that cannot be listed."""
+        constants = expression.compared.get(f"visits.{name}" if kind == "visits" else name, frozenset())
+        if kind == "seen":
+            return (False, True) if name in self.ids or name in self.nodes else (False,)
+        if kind == "visits":
+            return self._visit_domain(name, constants) if expression.simple else None
+        listed = expression.simple or not self._is_open(name)
+        return self._domain(name, constants) if listed else None
+
     def _scopes(self, *expressions: Expression) -> Iterator[Scope | None]:
         """Scopes that can make a difference to some expressions; None once where there are too many."""
         names = sorted({name for e in expressions for name in e.names})

@@ -149,6 +149,7 @@ class _Reader:
         script = Script(
             stall=stall,
             path=source.path,
+            where=source.root.where if source.root is not None else Where(source.path),
             files=tuple(source.rows),
             title=title,
             person=self.around.person,
@@ -165,6 +166,7 @@ class _Reader:
             faces=self.around.faces,
             acts=self.around.acts,
             names=parts.names,
+            lowest_share=self.around.lowest_share,
         )
         check_structure(script, self.findings, head["home"].where, head.get("standing", head["home"]).where)
         return script

@@ -12,7 +12,7 @@ from game.core.emotion_space import SIX
 from game.core.errors import BadInput
 from game.core.paths import ASSETS, DIALOGUE
 from game.formats.yaml_source import Node, load_yaml
-from game.story.acts import ActTable, load_acts
+from game.story.acts import ActTable, acts_from
 from game.story.findings import Findings
 from game.story.forms import Pronoun
 from game.story.model import Person
@@ -29,6 +29,7 @@ class Surroundings:
     person: Person
     acts: ActTable
     faces: Mapping[str, Mapping[str, float]]
+    lowest_share: float
 
 
 def surroundings(node: Node | None, source: Source, path: Path, findings: Findings) -> Surroundings | None:
@@ -38,8 +39,10 @@ def surroundings(node: Node | None, source: Source, path: Path, findings: Findin
         return None
     try:
         person = load_person(folder / "people" / f"{name}.yaml")
-        acts = load_acts(folder / "rules.yaml", person.temperament)
-        return Surroundings(person, acts, load_faces(folder / "faces.yaml"))
+        rules = load_yaml(folder / "rules.yaml")
+        lowest = rules["constants"]["lowest_price"].as_list()[0].as_float(0.0, 1.0)
+        acts = acts_from(rules, person.temperament)
+        return Surroundings(person, acts, load_faces(folder / "faces.yaml"), lowest)
     except BadInput as error:
         known = [file.stem for file in sorted((folder / "people").glob("*.yaml"))]
         if name in known:

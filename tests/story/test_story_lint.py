@@ -28,6 +28,23 @@ def test_there_are_many_broken_files_and_they_know_most_codes():
     assert set(CODES) - covered == set()
 
 
+@pytest.mark.parametrize("name", ["stale", "unlocked"])
+def test_translations_are_compared_with_their_lock(name):
+    path = BROKEN / name / f"{name}.yaml"
+    expected = [(code, int(line), int(col)) for code, line, col in _EXPECT.findall(path.read_text(encoding="utf-8"))]
+    assert [(f.code, f.where.line, f.where.col) for f in lint_files([BROKEN / name])] == expected
+    # Where English and Japanese both changed, the line was written anew: `gone_1` of the stale stall is no finding.
+    assert all("gone_1" not in str(finding) for finding in lint_files([path]))
+
+
+def test_what_the_purse_cannot_pay_for(tiny_text):
+    findings = Findings()
+    lint_text(Path("tiny.yaml"), tiny_text, findings, purse=449)
+    (finding,) = findings.all
+    assert (finding.code, finding.where.line, finding.where.col) == ("W_UNWINNABLE", 8, 3)
+    assert "'pot' costs 450 at the very least" in str(finding)
+
+
 def test_a_part_that_nobody_includes():
     assert [(f.code, f.where.line, f.where.col) for f in lint_files([BROKEN / "parts"])] == [("I_NOT_INCLUDED", 2, 1)]
 
