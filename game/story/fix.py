@@ -91,7 +91,7 @@ def _choices(node: Node | None, stem: str) -> Iterator[_Gap]:
         yield from _gap(choice, act.raw if act is not None else stem)
         name = choice.get("id")
         for wording in _items(choice.get("say")):
-            yield from _gap(wording, (name or act or node).raw or stem)
+            yield from _gap(wording, next((given.raw for given in (name, act) if given is not None), stem))
 
 
 def _gap(node: Node, stem: str) -> Iterator[_Gap]:

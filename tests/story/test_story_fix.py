@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import random
 import re
@@ -44,12 +43,11 @@ nodes:
 
 def test_ids_are_put_in_and_nothing_else_is_touched():
     text, ids = with_ids(WITHOUT)
-    assert ids == ["praise_1", "joke_1", "talk_1", "hub_2", "given_1"]
+    assert ids == ["praise_1", "joke_1", "joke_2", "hub_2", "given_1"]
     assert '- {id: praise_1, act: praise, en: "One.", ja: "一。"}   # kept' in text
     assert "    -   id: joke_1\n        act: joke   # kept too\n\n" in text
     assert '- {id: hub_2,  en: "Four."' in text
-    removed = [row for row in difflib.ndiff(list(WITHOUT), list(text)) if row.startswith("-")]
-    assert removed == []
+    assert re.sub(r"id: (praise_1|joke_1|joke_2|hub_2|given_1)(, |\n +)", "", text) == WITHOUT
     assert with_ids(text) == (text, [])
 
 
