@@ -64,7 +64,7 @@ CODES: dict[str, str] = {
     "W_FALLS_THROUGH": "a list of ways on whose last one has a condition",
     "W_SILENT_REACTION": "a reaction with nothing to say for some way the line can land",
     "I_NOT_INCLUDED": "a part that no stall beside it includes",
-    "I_NOT_LOCKED": "a stall that translations.lock.yaml does not know yet",
+    "I_NOT_LOCKED": "a stall, or lines of it, that translations.lock.yaml does not know yet",
     "I_ALWAYS": "a condition that always holds",
 }
 

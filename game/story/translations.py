@@ -62,6 +62,10 @@ def check_translations(script: Script, findings: Findings) -> None:
             "I_NOT_LOCKED", script.where, f"{LOCK_NAME} does not know {script.stall!r}", "run_game.py lint --fix"
         )
         return
+    new = [key for key, text, _ in texts_of(script) if key not in locked and text.en and text.ja]
+    if new:
+        message = f"{LOCK_NAME} does not know {len(new)} of its lines yet, {new[0]!r} first"
+        findings.add("I_NOT_LOCKED", script.where, message, "run_game.py lint --fix")
     for key, text, where in texts_of(script):
         if _stale(text, locked.get(key)):
             findings.add(
