@@ -20,9 +20,11 @@ from pathlib import Path
 from game.app.afternoon import PURSE
 from game.core.errors import BadInput
 from game.core.paths import DIALOGUE
+from game.formats.files import write_text
 from game.story import CODES, Script, fix_file, lint_files, load_script, write_lock
 from game.story.lint import dialogue_files
 from game.story.reader import is_stall
+from game.story.schema import schema_text
 from game.story.translations import LOCK_NAME
 
 __all__ = ["add_arguments", "run"]
@@ -38,6 +40,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accept", action="store_true", help="like --fix, and take stale Japanese as checked against the new English"
     )
+    parser.add_argument(
+        "--schema", action="store_true", help="write dialogue/schema.json (editor completion and hover), and stop"
+    )
     parser.add_argument("--purse", type=int, default=PURSE, help=f"what the player can spend (default {PURSE})")
     parser.add_argument("--codes", action="store_true", help="list the codes and what they mean, and stop")
 
@@ -47,6 +52,10 @@ def run(args: argparse.Namespace) -> int:
     if args.codes:
         for code, meaning in CODES.items():
             print(f"{code:24} {meaning}")
+        return 0
+    if args.schema:
+        write_text(DIALOGUE / "schema.json", schema_text())
+        print(_short(DIALOGUE / "schema.json"))
         return 0
     paths = [_short(path) for path in args.paths]
     fixed = _fix(paths, accept=args.accept) if args.fix or args.accept else {}

@@ -7,13 +7,14 @@ numbers, its range.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 from game.story.vocabulary import WHEN
 
 __all__ = [
+    *("ACT_HELP", "OUTCOME_HELP", "WHEN_HELP"),
     *("BRANCH", "CHOICE", "CURRENCY", "GROUP", "HEAD", "ITEM", "LINE", "NEEDS", "NODE", "ORDERS", "PART", "SHAPES"),
     *("NAME", "TIMER", "VARIABLES", "WORDS", "Key", "Kind", "Shape"),
 ]
@@ -27,6 +28,38 @@ Kind = Literal[
 # fmt: on
 
 ORDERS: tuple[str, ...] = ("weighted", "shuffled", "listed")
+
+# What an editor shows beside the words of the language.
+ACT_HELP: Mapping[str, str] = {
+    "praise": "says something good about the thing, the stall or the person",
+    "joke": "makes light of something",
+    "empathise": "names what the other may feel, or offers understanding",
+    "story": "asks where something comes from",
+    "press": "hurries or pushes",
+    "flaw": "finds fault with the thing",
+    "apologise": "takes something back",
+    "small_talk": "is about nothing that matters",
+    "wait": "says nothing and watches (standing)",
+    "leave": "turns to go (standing)",
+    "offer": "puts a bare offer (standing)",
+}
+OUTCOME_HELP: Mapping[str, str] = {
+    "deal": "an offer was accepted; ends the talk",
+    "sudden_end": "something else ends the talk",
+    "out_of_patience": "the shopkeeper has had enough; ends the talk",
+    "rounds_out": "there was no more time; ends the talk",
+    "walked_away": "the player left; ends the talk",
+    "refused_offer": "an offer was refused, the talk goes on",
+    "insulted": "the offer was far too low, the talk goes on",
+    "called_back": "the player turned to go and is called back",
+    "came_back": "where a later visit starts",
+}
+WHEN_HELP: Mapping[str, str] = {
+    "right": "the player's line did good, and the words tell it",
+    "neutral": "it did nothing, and the words tell it",
+    "wrong": "it did harm, and the words tell it",
+    "veiled": "the words do not tell how it landed: must fit every feeling",
+}
 
 
 @dataclass(frozen=True)
@@ -84,7 +117,10 @@ NAME = Shape(
     "name",
     "a name",
     "A name in both languages.",
-    (Key("en", "text", "In English.", required=True), Key("ja", "text", "In Japanese.", required=True)),
+    (
+        Key("en", "text", "The name in English.", required=True),
+        Key("ja", "text", "The name in Japanese.", required=True),
+    ),
 )
 CURRENCY = Shape(
     "currency",
@@ -178,7 +214,10 @@ BRANCH = Shape(
     "branch",
     "a way on",
     "A way on with a condition.",
-    (Key("if", "condition", "Taken where this holds.", required=True), Key("to", "node", "The node.", required=True)),
+    (
+        Key("if", "condition", "Taken where this holds.", required=True),
+        Key("to", "node", "The node to go to then.", required=True),
+    ),
 )
 TIMER = Shape(
     "timer",
