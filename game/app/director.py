@@ -16,8 +16,8 @@ from game.render import Camera
 
 __all__ = ["Direction", "Moment", "direct", "moment_of", "start_direction"]
 
-SCENES = ("title", "table", "talk", "outcome")
-_FRAMED = {"title": "home", "table": "talk", "talk": "talk", "outcome": "side"}
+SCENES = ("title", "market", "table", "talk", "outcome")
+_FRAMED = {"title": "home", "market": "home", "table": "talk", "talk": "talk", "outcome": "side"}
 
 GLIDE_S = {"home": 1.5, "talk": 1.1, "side": 1.0, "close": 0.75, "glance": 0.7, "offer": 0.9}
 """How long the way into each shot takes."""

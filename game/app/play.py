@@ -18,200 +18,30 @@ import os
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pygame
 
-from game.app.afternoon import Afternoon
 from game.app.arguments import parse_size
-from game.app.director import direct, moment_of, start_direction
-from game.app.input import Action, action_of
-from game.app.loading import load_step_assets
-from game.app.saves import load_game, save_game
-from game.app.screens import TalkScreen, TitleScreen
-from game.app.session import Screen, Session
-from game.app.settings import Settings, load_settings, user_folder
-from game.app.stage import StageShow, load_stage
-from game.app.step import new_world, step
-from game.app.strings import load_strings
-from game.app.ui import Canvas
-from game.app.world import TICK_S, World, leave_talk
-from game.core.errors import BadInput, MissingPart
-from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Renderer, level_named, pick_level
+from game.app.input import action_of
+from game.app.opening import open_session
+from game.app.settings import Settings
+from game.app.window import Window
+from game.app.world import World
+from game.core.errors import MissingPart
+from game.render import Device, Level, level_named, pick_level
 
-__all__ = ["Window", "add_arguments", "need_display", "run"]
-
-MAX_TICKS_A_FRAME = 5
-"""After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
+__all__ = ["Window", "add_arguments", "need_display", "open_session", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``play``."""
     parser.add_argument("--seed", type=int, default=None, help="seed of the afternoon (default: from the clock)")
     parser.add_argument("--language", choices=["en", "ja"], help="language (kept in the settings otherwise)")
-    parser.add_argument("--stall", default="flea", help="stall name or a dialogue file (default flea)")
+    parser.add_argument("--stall", help="only this stall: its name or a dialogue file (default: the whole market)")
     parser.add_argument("--size", type=parse_size, default=(1280, 720), metavar="WxH", help="window size")
     parser.add_argument("--mode", choices=["full", "gestures", "body", "face"], default="full", help="what is acted")
     parser.add_argument("--overlay", action="store_true", help="start with feelings and active nodes shown")
-
-
-class Window:
-    """The window loop: events in, fixed ticks, one frame out. Everything it does to the game is an Intent."""
-
-    def __init__(self, session: Session, device: Device, level: Level | None = None) -> None:
-        self.session = session
-        self.device = device
-        self.stage = load_stage()
-        level = level or DEFAULT
-        self.renderer = Renderer(
-            device,
-            self.stage.model,
-            self.stage.stall,
-            self.stage.backdrop,
-            level=level,
-            fonts=FontSet.for_language("en"),
-        )
-        self.show = StageShow(self.stage)
-        self.screen: Screen = TitleScreen()
-        self.direction = start_direction(session.assets.talk.script.stall)
-        self._language = _speakable(session)
-        self._late_s = 0.0
-        self._tick(None)
-
-    def close(self) -> None:
-        """Give the GL objects back."""
-        self.renderer.release()
-
-    def handle(self, action: Action) -> None:
-        """One action of the player."""
-        if action.kind == "quit":
-            self.session.running = False
-            return
-        if action.kind == "key" and action.key == "f11":
-            self.session.settings = self.session.settings.next("fullscreen")
-            return
-        self._go(self.screen.handle(self.session, self._in_reference(action)))
-
-    def _in_reference(self, action: Action) -> Action:
-        if action.at is None:
-            return action
-        scale = min(self.device.size[0] / 1280.0, self.device.size[1] / 720.0)
-        return replace(action, at=(action.at[0] / scale, action.at[1] / scale))
-
-    def _go(self, screen: Screen | None) -> None:
-        if screen is not None:
-            self.screen = screen
-            self._autosave()
-
-    def _autosave(self) -> None:
-        world = self.session.world
-        talk = world.talk if world.talk is not None and not world.talk.ended else None
-        try:
-            save_game(user_folder() / "autosave.json", self.session.afternoon, talk)
-        except BadInput as error:
-            self.session.message = str(error)
-
-    def _tick(self, intent_from: Screen | None) -> None:
-        from game.app.world import Intent
-
-        session = self.session
-        intent = Intent() if intent_from is None else intent_from.intent()
-        session.world = step(session.assets, session.world, intent)
-        assert session.world.body.pose is not None
-        self.show.tick(session.world.body.pose, TICK_S)
-        if intent.choice is not None:
-            self._autosave()
-        self._go(self.screen.after_tick(session))
-        self._direct()
-
-    def _direct(self) -> None:
-        session, screen = self.session, self.screen
-        offering = isinstance(screen, TalkScreen) and screen.offering
-        moment = moment_of(session.world, screen.scene, place=session.assets.talk.script.stall, offering=offering)
-        self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
-
-    def advance(self, elapsed_s: float) -> None:
-        """Let the game run for some real time, in whole ticks."""
-        self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
-        while self._late_s >= TICK_S:
-            self._late_s -= TICK_S
-            self._tick(self.screen)
-
-    def draw(self) -> None:
-        """One frame of whatever is on screen."""
-        session = self.session
-        if session.settings.language != self._language:
-            self._language = _speakable(session)
-        params = session.world.body.face_params
-        assert params is not None
-        view = self.show.frame(
-            params,
-            camera=self.direction.camera(session.world.time_s + self._late_s),
-            share=self._late_s / TICK_S,
-            show_face=session.world.mode != "body",
-            hidden_items=self.stage.gone(session.afternoon.owned),
-            time_s=session.world.time_s,
-            hud=self._draw_hud,
-        )
-        self.renderer.draw(view)
-
-    def _draw_hud(self, hud: Hud) -> None:
-        settings = self.session.settings
-        self.screen.draw(self.session, Canvas(hud, settings.language, settings.ui_scale))
-
-
-def _speakable(session: Session) -> str:
-    """The language there is a font for: without a Japanese one the game says so and stays in English."""
-    if session.settings.language == "ja":
-        try:
-            FontSet.for_language("ja")
-        except MissingFont as error:
-            session.message = str(error)
-            session.settings = replace(session.settings, language="en")
-            session.strings = session.strings.switched("en")
-            session.world = replace(session.world, language="en")
-    return session.settings.language
-
-
-def open_session(args: argparse.Namespace) -> Session:
-    """Settings, assets, world and, where there is one, the game that was saved last."""
-    settings, message = load_settings()
-    if args.language:
-        settings = replace(settings, language=args.language)
-    assets = load_step_assets(args.stall)
-    seed = args.seed if args.seed is not None else int(time.time()) & 0x7FFFFFFF
-    world = leave_talk(
-        replace(new_world(assets, seed, language=settings.language, text_speed=settings.text_speed), mode=args.mode)
-    )
-    session = Session(
-        assets, world, load_strings(settings.language), settings, Afternoon(seed=seed), message=message or ""
-    )
-    if args.overlay:
-        session.overlays |= {"feelings", "units"}
-    _take_up(session, user_folder() / "autosave.json")
-    return session
-
-
-def _take_up(session: Session, path: Path) -> None:
-    """Continue a saved game. A save that cannot be read is kept beside, never overwritten unseen."""
-    if not path.exists():
-        return
-    try:
-        afternoon, talk = load_game(path, session.assets.talk)
-    except BadInput as error:
-        aside = path.with_suffix(".unreadable.json")
-        try:
-            os.replace(path, aside)
-        except OSError:
-            aside = path
-        session.message = session.strings("save_kept", reason=str(error)[:120])
-        return
-    session.afternoon = afternoon
-    if talk is not None:
-        from game.app.world import enter_talk
-
-        session.world = enter_talk(session.assets, session.world, talk)
 
 
 def _choose_level(window: Window, settings: Settings) -> None:

@@ -1,109 +1,67 @@
 """Saved games: versioned JSON, written whole or not at all, checked value by value when read back.
 
-A save holds the afternoon (purse, what was bought) and, where a talk is under way, everything that talk owns. The
-story's part survives edits of the script as far as its ids do (``game.story.restore``).
+A save holds the afternoon (clock, purse, wish list, what was bought, what is remembered) and, where a talk is under
+way, everything that talk owns and the moves that led there. The story's part survives edits of the script as far as
+its ids do (``game.story.restore``); the moves give the curve back by playing them again. Saves of version 1, from
+when there was one stall, are taken over.
 """
 
 from __future__ import annotations
 
 import json
-import math
 import os
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from game.app.afternoon import Afternoon, Bought
-from game.app.talk import TalkAssets, TalkState, talk_env
+import numpy as np
+
+from game.app.afternoon import Afternoon, Bought, Reading, StallDay, Wish, lesson_of, visit_stall
+from game.app.bazaar import Bazaar
+from game.app.save_reader import SaveReader, read_json
+from game.app.talk import Choice, TalkAssets, TalkState, choose, talk_env
+from game.app.world import Mark, first_mark, next_mark
 from game.core.errors import BadInput, Where
 from game.emotion import Feeling
 from game.market import Answer, Bargain
 from game.story import Beat, Memory, restore, resume
 from game.story import save as save_story
+from game.story.vocabulary import Value
 
-__all__ = ["SAVE_VERSION", "load_game", "save_game"]
+__all__ = ["SAVE_VERSION", "SavedGame", "load_game", "retrace", "save_game"]
 
-SAVE_VERSION = 1
-MAX_BYTES = 1_000_000
+SAVE_VERSION = 2
 
 
-@dataclass(frozen=True)
-class _Reader:
-    """Typed access to untrusted JSON with the pointer of every value."""
+@dataclass(frozen=True, eq=False)
+class SavedGame:
+    """The afternoon; the stall one stands at; the talk under way, if any, with its curve."""
 
-    path: Path
-    data: Any
-    pointer: str = ""
-
-    def fail(self, expected: str, seen: object) -> BadInput:
-        return BadInput(
-            where=Where(self.path, pointer=self.pointer),
-            expected=expected,
-            seen=seen,
-            hint="the save was left as it is; start a new afternoon or restore the file",
-        )
-
-    def at(self, key: str) -> _Reader:
-        if not isinstance(self.data, dict) or key not in self.data:
-            raise self.fail(f"the key {key}", "none")
-        return _Reader(self.path, self.data[key], f"{self.pointer}/{key}")
-
-    def number(self, low: float = -1e9, high: float = 1e9) -> float:
-        value = self.data
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise self.fail("a number", value)
-        if not low <= value <= high:
-            raise self.fail(f"a number from {low:g} to {high:g}", value)
-        return float(value)
-
-    def whole(self, low: int = 0, high: int = 2**63) -> int:
-        value = self.data
-        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            raise self.fail(f"a whole number from {low} to {high}", value)
-        return value
-
-    def text(self, limit: int = 200) -> str:
-        if not isinstance(self.data, str) or len(self.data) > limit:
-            raise self.fail(f"a text of at most {limit} characters", self.data)
-        return self.data
-
-    def items(self, limit: int = 1000) -> list[_Reader]:
-        if not isinstance(self.data, list) or len(self.data) > limit:
-            raise self.fail(f"a list of at most {limit}", type(self.data).__name__)
-        return [_Reader(self.path, item, f"{self.pointer}/{i}") for i, item in enumerate(self.data)]
-
-    def flag(self) -> bool:
-        if not isinstance(self.data, bool):
-            raise self.fail("true or false", self.data)
-        return self.data
+    afternoon: Afternoon
+    stall: str
+    talk: TalkState | None = None
+    marks: tuple[Mark, ...] = ()
 
 
 def _plain(value: Any) -> dict[str, Any]:
     return {field.name: getattr(value, field.name) for field in fields(value)}
 
 
-def save_game(path: Path, afternoon: Afternoon, talk: TalkState | None) -> None:
+def save_game(path: Path, game: SavedGame) -> None:
     """Write the game to ``path``, atomically. Raises BadInput where the folder cannot be written."""
-    data: dict[str, Any] = {"version": SAVE_VERSION, "afternoon": _afternoon_to_dict(afternoon), "talk": None}
-    if talk is not None:
-        data["talk"] = {
-            "seed": talk.seed,
-            "item": talk.item,
-            "list_price": talk.list_price,
-            "purse": talk.purse,
-            "visit": talk.visit,
-            "deal_price": talk.deal_price,
-            "story": save_story(talk.story),
-            "feeling": {
-                "felt": list(talk.feeling.six),
-                "mask_shows": talk.feeling.mask_shows,
-                "last_right": talk.feeling.last_right,
-                "used": sorted(talk.feeling.used),
-            },
-            "bargain": _plain(talk.bargain),
-            "answer": _plain(talk.answer),
-        }
+    data: dict[str, Any] = {
+        "version": SAVE_VERSION,
+        "afternoon": _afternoon_to_dict(game.afternoon),
+        "stall": game.stall,
+        "talk": None if game.talk is None else _talk_to_dict(game.talk),
+        "moves": [
+            {"choice": m.choice.id, "offer": m.choice.offer, "guess": m.guess}
+            for m in game.marks
+            if m.choice is not None
+        ],
+    }
     text = json.dumps(data, ensure_ascii=False, indent=1)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -123,48 +81,98 @@ def save_game(path: Path, afternoon: Afternoon, talk: TalkState | None) -> None:
         ) from None
 
 
-def load_game(path: Path, assets: TalkAssets) -> tuple[Afternoon, TalkState | None]:
-    """Read a save. Raises BadInput with the file and JSON pointer of the first thing that is wrong."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise BadInput(where=Where(path), expected=f"a save of at most {MAX_BYTES} bytes", seen=path.stat().st_size)
-        raw = path.read_bytes()
-    except OSError as error:
-        raise BadInput("save", where=Where(path), expected="a readable file", seen=error.strerror or "?") from None
-    try:
-        data = json.loads(raw.decode("utf-8"))
-    except (ValueError, RecursionError) as error:
-        at = getattr(error, "pos", getattr(error, "start", 0))
-        raise BadInput(where=Where(path, byte=at), expected="JSON", seen=str(error).split(":")[0]) from None
-    root = _Reader(path, data)
+def load_game(path: Path, bazaar: Bazaar, talks: Mapping[str, TalkAssets]) -> SavedGame:
+    """Read a save. Raises BadInput with the file and JSON pointer of the first thing that is wrong.
+
+    talks: what the talks of the open stalls need. A talk at a stall that does not open today is not taken up.
+    """
+    root = read_json(path)
     version = root.at("version").whole()
-    if version != SAVE_VERSION:
+    if version not in (1, SAVE_VERSION):
         raise root.at("version").fail(f"version {SAVE_VERSION}", version)
+    if version == 1:
+        root = _from_version_1(root)
     afternoon = _afternoon_from(root.at("afternoon"))
-    return afternoon, None if root.at("talk").data is None else _talk_from(root.at("talk"), assets)
+    stall = root.at("stall").text()
+    saved = root.at("talk")
+    if saved.data is None or stall not in talks:
+        return SavedGame(afternoon, stall)
+    assets = lesson_of(bazaar, afternoon).bend(talks[stall])
+    talk = _talk_from(saved, assets)
+    moves = [
+        (
+            Choice(m.at("choice").text(), None if m.at("offer").data is None else m.at("offer").whole(0, 10**9)),
+            m.at("guess").text(),
+        )
+        for m in root.at("moves").items()
+    ]
+    marks = retrace(assets, afternoon, talk, moves)
+    return SavedGame(afternoon, stall, talk, marks or (first_mark(assets, talk),))
+
+
+def retrace(
+    assets: TalkAssets, afternoon: Afternoon, talk: TalkState, moves: list[tuple[Choice, str]]
+) -> tuple[Mark, ...]:
+    """The curve of a talk by playing its moves again; empty where they no longer lead to it (an edited script)."""
+    try:
+        state = visit_stall(assets, afternoon, talk.item)
+        marks = [first_mark(assets, state)]
+        for move, guess in moves:
+            after = choose(assets, state, move)
+            marks.append(next_mark(assets, state, after, move, guess, len(marks)))
+            state = after
+    except BadInput:
+        return ()
+    same = state.bargain == talk.bargain and np.array_equal(state.feeling.felt, talk.feeling.felt)
+    return tuple(marks) if same else ()
+
+
+def _from_version_1(root: SaveReader) -> SaveReader:
+    """Version 1 knew one stall, no clock and no list: its visits and memory become those of the stall ``flea``."""
+    old = root.at("afternoon")
+    failed = old.at("failed_visits").whole(0, 10**6)
+    visits = old.at("visits").whole(0, 10**6)
+    known = _plain(StallDay(talks=visits, deals=max(visits - failed, 0), annoyance=float(failed)))
+    purse = old.at("purse").whole(0, 10**9)
+    paid = sum(b.at("price").whole(0, 10**9) for b in old.at("bought").items())
+    afternoon = _afternoon_to_dict(Afternoon(seed=old.at("seed").whole(), purse=purse, budget=purse + paid))
+    shared = old.data.get("shared", {})  # late saves of version 1 had it
+    afternoon |= {
+        "shared": shared,
+        "talks": visits,
+        "place": "flea",
+        "stalls": {"flea": known | {"memory": old.at("memory").data}},
+        "bought": [{**b.data, "stall": "flea"} for b in old.at("bought").items()],
+    }
+    data = {"version": 2, "afternoon": afternoon, "stall": "flea", "talk": root.at("talk").data, "moves": []}
+    return SaveReader(root.path, data)
 
 
 def _afternoon_to_dict(afternoon: Afternoon) -> dict[str, Any]:
-    return {
-        "seed": afternoon.seed,
-        "purse": afternoon.purse,
-        "visits": afternoon.visits,
-        "failed_visits": afternoon.failed_visits,
-        "bought": [_plain(b) for b in afternoon.bought],
-        "memory": None if afternoon.memory is None else afternoon.memory.to_dict(),
-        "shared": dict(afternoon.shared),
+    stalls = {
+        name: _plain(known) | {"memory": None if known.memory is None else known.memory.to_dict()}
+        for name, known in afternoon.stalls.items()
     }
+    lists = {name: [_plain(v) for v in getattr(afternoon, name)] for name in ("wishes", "bought", "readings")}
+    other = {"stalls": stalls, "home": list(afternoon.home), "shared": dict(afternoon.shared)}
+    return _plain(afternoon) | lists | other
 
 
-def _afternoon_from(reader: _Reader) -> Afternoon:
-    memory = reader.at("memory")
+def _afternoon_from(reader: SaveReader) -> Afternoon:
+    stalls = reader.at("stalls")
     return Afternoon(
         seed=reader.at("seed").whole(),
+        day=reader.at("day").whole(1, 10**6),
         purse=reader.at("purse").whole(0, 10**9),
-        visits=reader.at("visits").whole(0, 10**6),
-        failed_visits=reader.at("failed_visits").whole(0, 10**6),
+        budget=reader.at("budget").whole(0, 10**9),
+        minutes=reader.at("minutes").number(0, 1e6),
+        place=reader.at("place").text(),
+        talks=reader.at("talks").whole(0, 10**6),
+        stalls={name: _stall_from(stalls.at(name)) for name in stalls.names(100)},
+        wishes=tuple(Wish(w.at("stall").text(), w.at("item").text()) for w in reader.at("wishes").items(100)),
         bought=tuple(
             Bought(
+                stall=b.at("stall").text(),
                 item=b.at("item").text(),
                 price=b.at("price").whole(0, 10**9),
                 list_price=b.at("list_price").whole(0, 10**9),
@@ -172,23 +180,20 @@ def _afternoon_from(reader: _Reader) -> Afternoon:
             )
             for b in reader.at("bought").items()
         ),
-        memory=None
-        if memory.data is None
-        else Memory.from_dict(memory.data, Where(memory.path, pointer=memory.pointer)),
-        shared=_shared_from(reader),
+        readings=tuple(
+            Reading(r.at("stall").text(), r.at("guess").text(), r.at("felt").text(), r.at("shown").text())
+            for r in reader.at("readings").items()
+        ),
+        home=tuple(name.text() for name in reader.at("home").items()),
+        taken_back=reader.at("taken_back").whole(0, 10**6),
+        shared=_variables(reader.at("shared")),
     )
 
 
-def _shared_from(reader: _Reader) -> dict[str, float | str | bool]:
-    """Variables by name: a number, a short text, true or false. Saves of before there were any have none."""
-    if not isinstance(reader.data, dict) or "shared" not in reader.data:
-        return {}
-    found = reader.at("shared")
-    if not isinstance(found.data, dict) or len(found.data) > 1000:
-        raise found.fail("a mapping of at most 1000", type(found.data).__name__)
-    out: dict[str, float | str | bool] = {}
-    for name in found.data:
-        value = found.at(name)
+def _variables(reader: SaveReader) -> dict[str, Value]:
+    out: dict[str, Value] = {}
+    for name in reader.names():
+        value = reader.at(name)
         if isinstance(value.data, bool):
             out[name] = value.data
         else:
@@ -196,7 +201,43 @@ def _shared_from(reader: _Reader) -> dict[str, float | str | bool]:
     return out
 
 
-def _talk_from(reader: _Reader, assets: TalkAssets) -> TalkState:
+def _stall_from(reader: SaveReader) -> StallDay:
+    memory = reader.at("memory")
+    kept = None
+    if memory.data is not None:
+        kept = Memory.from_dict(memory.data, Where(memory.path, pointer=memory.pointer))
+    return StallDay(
+        talks=reader.at("talks").whole(0, 10**6),
+        deals=reader.at("deals").whole(0, 10**6),
+        annoyance=reader.at("annoyance").number(0, 1e6),
+        memory=kept,
+        trust=reader.at("trust").number(0, 1),
+        felt=reader.at("felt").text(),
+        ending=reader.at("ending").text(),
+    )
+
+
+def _talk_to_dict(talk: TalkState) -> dict[str, Any]:
+    return {
+        "seed": talk.seed,
+        "item": talk.item,
+        "list_price": talk.list_price,
+        "purse": talk.purse,
+        "visit": talk.visit,
+        "deal_price": talk.deal_price,
+        "story": save_story(talk.story),
+        "feeling": {
+            "felt": list(talk.feeling.six),
+            "mask_shows": talk.feeling.mask_shows,
+            "last_right": talk.feeling.last_right,
+            "used": sorted(talk.feeling.used),
+        },
+        "bargain": _plain(talk.bargain),
+        "answer": _plain(talk.answer),
+    }
+
+
+def _talk_from(reader: SaveReader, assets: TalkAssets) -> TalkState:
     feeling, bargain, answer = reader.at("feeling"), reader.at("bargain"), reader.at("answer")
     felt = feeling.at("felt").items(6)
     if len(felt) != 6:

@@ -2,36 +2,116 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from game.app.afternoon import Afternoon
+from game.app.afternoon import Afternoon, Reading, finish_talk, lesson_of, next_day, open_day, talk_minutes, visit_stall
 from game.app.input import Action
+from game.app.market import Market, StallLoader
 from game.app.settings import Settings
-from game.app.step import StepAssets
+from game.app.step import StepAssets, new_world
 from game.app.strings import Strings
+from game.app.talk import TalkState
 from game.app.ui import Canvas
-from game.app.world import Intent, World
+from game.app.world import Intent, Mark, World, enter_talk, leave_talk
 
 __all__ = ["MenuScreen", "Screen", "Session"]
 
 
 @dataclass
 class Session:
-    """The running game as the screens see it. ``world`` is replaced by every tick; screens never change it."""
+    """The running game as the screens see it. ``world`` is replaced by every tick; screens never change it.
+
+    assets: those of the stall one stands at; during a talk, bent by its lesson. loader: reads the other stalls;
+    taken_up: whether the game saved last has been looked for.
+    """
 
     assets: StepAssets
     world: World
     strings: Strings
     settings: Settings
     afternoon: Afternoon
+    market: Market
     overlays: set[str] = field(default_factory=set)
     message: str = ""
     running: bool = True
+    loader: StallLoader | None = None
+    taken_up: bool = False
+
+    @property
+    def stall(self) -> str:
+        """The stall one stands at."""
+        return self.assets.talk.script.stall
+
+    @property
+    def minutes(self) -> float:
+        """Minutes of the afternoon gone by, those of the talk under way among them."""
+        talk = self.world.talk
+        if talk is None:
+            return self.afternoon.minutes
+        return self.afternoon.minutes + talk_minutes(self.market.bazaar, [m.act for m in self.world.marks[1:]])
+
+    @property
+    def day_share(self) -> float:
+        """0 when the market opens, 1 when it closes."""
+        return self.market.bazaar.day_share(self.minutes)
 
     def money(self, amount: float) -> str:
         """An amount as the stall's currency writes it in the present language."""
         return self.assets.talk.script.currency.text(amount).get(self.strings.language)
+
+    def go_to(self, stall: str) -> None:
+        """Stand at a stall's table: its person, calm, and its goods."""
+        if stall != self.stall:
+            world, number = self.world, 1 + self.market.order.index(stall)
+            fresh = new_world(
+                self.market.stalls[stall].assets,
+                world.seed + 7919 * number,
+                language=world.language,
+                text_speed=world.text_speed,
+            )
+            self.world = replace(fresh, mode=world.mode)
+        self.world = leave_talk(self.world)
+        self.assets = self.market.stalls[stall].assets
+
+    def begin_talk(self, item: str) -> None:
+        """Ask about a thing on this table."""
+        self.bend()
+        talk = visit_stall(self.assets.talk, self.afternoon, item)
+        self.world = enter_talk(self.assets, self.world, talk)
+
+    def resume_talk(self, talk: TalkState, marks: tuple[Mark, ...]) -> None:
+        """Go on with a talk as it stood, its curve with it."""
+        self.bend()
+        self.world = replace(enter_talk(self.assets, self.world, talk), marks=marks)
+
+    def open_day(self, *, again: bool = False) -> None:
+        """A new afternoon: the next day of this one, or a first one."""
+        if self.loader is not None:
+            self.loader.wait_for_scripts()
+        bazaar, scripts, before = self.market.bazaar, self.market.scripts, self.afternoon
+        first = self.market.order[0]
+        if again:
+            self.afternoon = next_day(bazaar, scripts, before)
+        else:
+            self.afternoon = open_day(bazaar, scripts, before.seed)
+        self.afternoon = replace(self.afternoon, place=first)
+        self.go_to(first)
+
+    def bend(self) -> None:
+        """The person as the next talk's lesson wants them."""
+        plain = self.market.stalls[self.stall].assets
+        self.assets = replace(plain, talk=lesson_of(self.market.bazaar, self.afternoon).bend(plain.talk))
+
+    def end_talk(self) -> None:
+        """Book the talk that has ended and step back from the table."""
+        talk, marks = self.world.talk, self.world.marks
+        assert talk is not None
+        readings = [Reading(self.stall, m.guess, m.label, m.face) for m in marks if m.guess]
+        minutes = talk_minutes(self.market.bazaar, [m.act for m in marks[1:]])
+        self.afternoon = finish_talk(self.market.bazaar, self.assets.talk, self.afternoon, talk, minutes, readings)
+        self.assets = self.market.stalls[self.stall].assets
+        self.world = leave_talk(self.world)
 
 
 class Screen(Protocol):

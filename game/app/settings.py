@@ -22,6 +22,7 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "ui_scale": (1.0, 1.25, 1.5, 2.0),
     "captions": (False, True),
     "reduced_motion": (False, True),
+    "high_contrast": (False, True),
     "quality": ("auto", "low", "medium", "default", "high", "ultra"),
 }
 """Every setting with the values it may have; the first is not always the default."""
@@ -37,6 +38,7 @@ class Settings:
     ui_scale: float = 1.0
     captions: bool = False
     reduced_motion: bool = False
+    high_contrast: bool = False
     quality: str = "auto"
 
     def next(self, name: str) -> Settings:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from game.animation import Performer, PerformSignal
 from game.app.talk import Choice, TalkAssets, TalkState, choose
-from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Mark, Speech, World
+from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Speech, World, next_mark
 from game.core.emotion_space import EMOTIONS, SIX, with_neutral
 from game.core.springs import damp
 from game.embos import GestureCues, Planner, PlannerSignal
@@ -87,17 +87,9 @@ def story_stage(assets: StepAssets, world: World, intent: Intent) -> World:
             return replace(world, waited=world.waited + 1)
         assert world.talk.beat.timer is not None
         choice = Choice(world.talk.beat.timer.choice)
-    said = world.talk.beat.choice(choice.id)
     talk = choose(assets.talk, world.talk, choice)
-    record = dict(talk.record)
-    mark = Mark(
-        round=len(world.marks),
-        act=str(record["act"]),
-        quality=str(record["quality"]),
-        felt=tuple(float(v) for v in record["felt"]),
-        shown=tuple(float(v) for v in record["shown"]),
-        text_en=said.en,
-        text_ja=said.ja,
+    mark = next_mark(
+        assets.talk, world.talk, talk, choice, intent.guess, number=len(world.marks), time_s=world.time_s
     )
     return replace(world, talk=talk, queue=talk.beat.lines, marks=(*world.marks, mark), waited=0)
 

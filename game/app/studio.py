@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from game.animation import Mode
 from game.app.afternoon import Afternoon
 from game.app.loading import load_step_assets
+from game.app.market import Market
 from game.app.overlays import draw_overlays
 from game.app.session import Session
 from game.app.settings import Settings
@@ -74,6 +75,7 @@ class Studio:
             load_strings(args.language),
             Settings(language=args.language),
             Afternoon(seed=args.seed),
+            Market.single(assets),
         )
         if args.shown:
             self.session.world = replace(self.session.world, shown_target=parse_emotion(args.shown))

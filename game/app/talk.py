@@ -130,7 +130,7 @@ def start_talk(
     *,
     purse: int,
     memory: Memory | None = None,
-    failed_visits: int = 0,
+    failed_visits: float = 0.0,
     shared: Mapping[str, float | str | bool] | None = None,
 ) -> TalkState:
     """Walk up to the stall for one item. Mood, lowest price and patience are drawn anew on every visit.

@@ -9,40 +9,42 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from game.app.gallery import Gallery
 from game.app.input import Action
 from game.render import Hud
 
-__all__ = ["INK", "PALETTE", "Button", "Buttons", "Canvas", "Colour", "Rect", "fade"]
+__all__ = ["INK", "PALETTE", "Button", "Buttons", "Canvas", "Colour", "Rect", "fade", "hex_colour"]
 
 Colour = tuple[float, float, float, float]
 
 
-def _hex(text: str, alpha: float = 1.0) -> Colour:
+def hex_colour(text: str, alpha: float = 1.0) -> Colour:
+    """``RRGGBB`` and an alpha in [0, 1]."""
     return (int(text[0:2], 16) / 255, int(text[2:4], 16) / 255, int(text[4:6], 16) / 255, alpha)
 
 
 PALETTE: dict[str, Colour] = {
-    "paper": _hex("FFF6E4", 0.95),
-    "paper_warm": _hex("FFE9BF", 0.98),
-    "line": _hex("6E4034"),
-    "red": _hex("D9483A"),
-    "teal": _hex("2A7B78"),
-    "indigo": _hex("34608A"),
-    "gold": _hex("E0982F"),
-    "shade": _hex("2B1630", 0.62),
-    "faint": _hex("8A6A5C"),
-    "white": _hex("FFFDF6"),
+    "paper": hex_colour("FFF6E4", 0.95),
+    "paper_warm": hex_colour("FFE9BF", 0.98),
+    "line": hex_colour("6E4034"),
+    "red": hex_colour("D9483A"),
+    "teal": hex_colour("2A7B78"),
+    "indigo": hex_colour("34608A"),
+    "gold": hex_colour("E0982F"),
+    "shade": hex_colour("2B1630", 0.62),
+    "faint": hex_colour("8A6A5C"),
+    "white": hex_colour("FFFDF6"),
 }
-INK: Colour = _hex("3B1A1C")
+INK: Colour = hex_colour("3B1A1C")
 
 FEELING_COLOURS: dict[str, Colour] = {
-    "anger": _hex("D8402F"),
-    "fear": _hex("7A5BA8"),
-    "joy": _hex("EBA52C"),
-    "sadness": _hex("3F74B5"),
-    "disgust": _hex("6B8F3A"),
-    "surprise": _hex("E0709A"),
-    "neutral": _hex("9A8B80"),
+    "anger": hex_colour("D8402F"),
+    "fear": hex_colour("7A5BA8"),
+    "joy": hex_colour("EBA52C"),
+    "sadness": hex_colour("3F74B5"),
+    "disgust": hex_colour("6B8F3A"),
+    "surprise": hex_colour("E0709A"),
+    "neutral": hex_colour("9A8B80"),
 }
 
 
@@ -60,6 +62,11 @@ class Rect:
     w: float
     h: float
 
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The centre."""
+        return self.x + self.w / 2, self.y + self.h / 2
+
     def holds(self, at: tuple[float, float] | None) -> bool:
         """Whether a point lies inside."""
         return at is not None and self.x <= at[0] < self.x + self.w and self.y <= at[1] < self.y + self.h
@@ -71,8 +78,11 @@ class Canvas:
     ``text_scale`` enlarges text only (accessibility). ``scale``: device pixels per reference pixel.
     """
 
-    def __init__(self, hud: Hud, language: str = "en", text_scale: float = 1.0) -> None:
+    def __init__(
+        self, hud: Hud, language: str = "en", text_scale: float = 1.0, pictures: Gallery | None = None
+    ) -> None:
         self.hud = hud
+        self.pictures = pictures
         self._k = min(1.0, hud.width / 1280.0)
         self.width = hud.width / self._k
         self.height = hud.height / self._k
@@ -100,6 +110,11 @@ class Canvas:
             rect.x * k, rect.y * k, rect.w * k, rect.h * k,
             fill=fill, radius=min(radius, rect.h / 2) * k, border=border * k, edge=border_colour, shadow=shadow * k,
         )  # fmt: skip
+
+    def gradient(self, rect: Rect, top: Colour, bottom: Colour) -> None:
+        """A box that runs from one colour to another."""
+        k = self._k
+        self.hud.rect(rect.x * k, rect.y * k, rect.w * k, rect.h * k, fill=top, fill_bottom=bottom)
 
     def text(
         self,
@@ -162,6 +177,19 @@ class Canvas:
         k = self._k
         self.hud.circle(x * k, y * k, radius * k, fill=colour)
 
+    def picture(self, name: str, rect: Rect, *, alpha: float = 1.0, cover: bool = False) -> bool:
+        """A picture of the gallery; ``cover`` cuts it to the rectangle's shape. False where there is none."""
+        found = self.pictures.get(name) if self.pictures is not None else None
+        if found is None:
+            return False
+        k, piece = self._k, (0.0, 0.0, 1.0, 1.0)
+        if cover:
+            own, wanted = found.width / found.height, rect.w / rect.h
+            u, v = min(wanted / own, 1.0), min(own / wanted, 1.0)
+            piece = ((1 - u) / 2, (1 - v) / 2, u, v)
+        self.hud.image(found, rect.x * k, rect.y * k, rect.w * k, rect.h * k, piece=piece, tint=(1.0, 1.0, 1.0, alpha))
+        return True
+
     def bar(self, rect: Rect, share: float, colour: Colour, back: Colour) -> None:
         """A horizontal bar filled to a share in [0, 1]."""
         self.panel(rect, back, radius=rect.h / 2)
@@ -183,11 +211,17 @@ class Button:
     size: float = 19.0
 
 
+_WAYS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
+
+
 @dataclass
 class Buttons:
-    """A group of buttons with one focus, moved by arrows and by the mouse. Rebuilt by its screen every frame."""
+    """A group of buttons with one focus, moved by arrows and by the mouse. Rebuilt by its screen every frame.
+
+    across: left and right move the focus too, to what lies there."""
 
     focus: str = ""
+    across: bool = False
     buttons: list[Button] = field(default_factory=list)
     mouse: tuple[float, float] | None = None
 
@@ -208,6 +242,8 @@ class Buttons:
         elif action.kind == "click":
             self.mouse = action.at
             return next((b.id for b in able if b.rect.holds(action.at)), None)
+        elif self.across and action.kind in _WAYS and able:
+            self.focus = self._toward(able, *_WAYS[action.kind])
         elif action.kind in {"up", "down"} and able:
             at = next((i for i, b in enumerate(able) if b.id == self.focus), 0)
             self.focus = able[(at + (1 if action.kind == "down" else -1)) % len(able)].id
@@ -216,6 +252,18 @@ class Buttons:
         elif action.kind == "key":
             return next((b.id for b in able if b.key == action.key), None)
         return None
+
+    def _toward(self, able: list[Button], dx: int, dy: int) -> str:
+        """The nearest button in a direction, else the one that has the focus."""
+        here = next((b for b in able if b.id == self.focus), able[0])
+        x, y = here.rect.middle
+        best, nearest = here.id, float("inf")
+        for button in able:
+            bx, by = button.rect.middle
+            ahead, aside = (bx - x) * dx + (by - y) * dy, abs((bx - x) * dy) + abs((by - y) * dx)
+            if ahead > 4 and ahead + 2 * aside < nearest:
+                best, nearest = button.id, ahead + 2 * aside
+        return best
 
     def draw(self, canvas: Canvas, paint: Callable[[Canvas, Button, bool], None] | None = None) -> None:
         """Draw them all, the focused one raised."""

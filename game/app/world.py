@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from game.app.talk import Choice, TalkState
-from game.core.emotion_space import with_neutral
+from game.app.talk import Choice, TalkAssets, TalkState
+from game.core.emotion_space import EMOTIONS, with_neutral
 from game.embos import Decisions, GestureCues, PlannerSignal, PlannerState
+from game.emotion import shown_emotion
+from game.emotion.rules import label_index
 from game.face import VisemeTrack
 from game.story import Spoken, TimedText
 
@@ -19,7 +21,10 @@ if TYPE_CHECKING:
     from game.app.step import StepAssets
     from game.face import FaceParams, FaceState
 
-__all__ = ["TEXT_SPEED", "TICK_S", "Body", "Intent", "Mark", "Speech", "World", "enter_talk", "leave_talk"]
+__all__ = [
+    "TEXT_SPEED", "TICK_S", "Body", "Intent", "Mark", "Speech", "World", "enter_talk", "first_mark", "leave_talk",
+    "next_mark",
+]  # fmt: skip
 
 Floats = NDArray[np.float64]
 
@@ -34,10 +39,13 @@ None shows a line at once."""
 
 @dataclass(frozen=True)
 class Intent:
-    """What the player asks of a tick: a choice, or to go on to the next line (or finish the one being spoken)."""
+    """What the player asks of a tick: a choice, or to go on to the next line (or finish the one being spoken).
+
+    guess: the token laid before the choice: the feeling the player believes in, none where empty."""
 
     choice: Choice | None = None
     proceed: bool = False
+    guess: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +62,11 @@ class Speech:
 
 @dataclass(frozen=True)
 class Mark:
-    """A point on the afternoon's curve: what was felt and shown, and the player's move that led there."""
+    """A point on the talk's curve: what was felt and shown, and the player's move that led there.
+
+    before: the talk as it stood when the player chose (None at the greeting); time_s: world time of the choice;
+    guess: the token laid; label, face: what was felt and what the face showed most just before.
+    """
 
     round: int
     act: str
@@ -63,6 +75,17 @@ class Mark:
     shown: tuple[float, ...]
     text_en: str = ""
     text_ja: str = ""
+    before: TalkState | None = field(default=None, compare=False)
+    choice: Choice | None = None
+    guess: str = ""
+    label: str = ""
+    face: str = ""
+    ask: float = 1.0
+    time_s: float = 0.0
+
+    def text(self, language: str) -> str:
+        """The player's words, as they stood on the button."""
+        return self.text_ja if language == "ja" and self.text_ja else self.text_en
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,12 +151,41 @@ class World:
         return self.talk is not None and self.talk.ended and self.speech is None and not self.queue
 
 
+def first_mark(assets: TalkAssets, talk: TalkState, time_s: float = 0.0) -> Mark:
+    """The curve's first point: the greeting."""
+    shown = shown_emotion(assets.person, talk.feeling)
+    return Mark(0, "", "", tuple(talk.feeling.felt7), tuple(shown), time_s=time_s)
+
+
+def next_mark(
+    assets: TalkAssets, before: TalkState, after: TalkState, move: Choice, guess: str, number: int, time_s: float = 0.0
+) -> Mark:
+    """The curve's point after a move, from the talk before and after it."""
+    said, record = before.beat.choice(move.id), dict(after.record)
+    shown = shown_emotion(assets.person, before.feeling)
+    return Mark(
+        round=number,
+        act=str(record["act"]),
+        quality=str(record["quality"]),
+        felt=tuple(float(v) for v in record["felt"]),
+        shown=tuple(float(v) for v in record["shown"]),
+        text_en=said.en,
+        text_ja=said.ja,
+        before=before,
+        choice=move,
+        guess=guess,
+        label=str(record["felt_label"]),
+        face=EMOTIONS[label_index(shown[:6], assets.feelings.label_threshold)],
+        ask=after.bargain.ask,
+        time_s=time_s,
+    )
+
+
 def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
     """The player steps up to the table: the first lines are queued, the feelings are those of the talk."""
     from game.app.step import targets_of
 
     felt, shown = targets_of(assets, talk)
-    mark = Mark(0, "", "", tuple(np.append(felt, 0.0)), tuple(shown))
     return replace(
         world,
         talk=talk,
@@ -143,7 +195,7 @@ def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
         backlog=(),
         felt_target=felt,
         shown_target=shown,
-        marks=(mark,),
+        marks=(first_mark(assets.talk, talk, world.time_s),),
     )
 
 

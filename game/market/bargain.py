@@ -87,7 +87,7 @@ class Answer:
     tells: bool = False
 
 
-def start_bargain(rules: MarketRules, patience: float, rng: Draws, *, failed_visits: int = 0) -> Bargain:
+def start_bargain(rules: MarketRules, patience: float, rng: Draws, *, failed_visits: float = 0.0) -> Bargain:
     """A fresh bargain: the lowest price and the patience are drawn anew on every visit."""
     low, high = rules.lowest_price
     lowest = low + (high - low) * rng.random()

@@ -80,6 +80,17 @@ class Renderer(Owner):
         self.level = level
         self.set_level(level)
 
+    def set_stage(
+        self, model: CharacterModel | None, stall: StaticMesh | None, backdrop: NDArray[np.uint8] | None
+    ) -> None:
+        """Draw another person at another stall from the next frame on; interface and fonts stay."""
+        self._drop_level()
+        self._owned.remove(self._scene)
+        self._scene.release()
+        self._scene = self.own(SceneDrawing(self.device, stall, backdrop))
+        self._model, self._face = model, None
+        self.set_level(self.level)
+
     def set_level(self, level: Level) -> None:
         """Change the quality; the next frame uses it."""
         self._drop_level()

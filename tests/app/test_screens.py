@@ -11,7 +11,15 @@ import pytest
 
 from game.app.input import Action
 from game.app.play import Window, open_session
-from game.app.screens import DayOverScreen, OutcomeScreen, SettingsScreen, TableScreen, TalkScreen, TitleScreen
+from game.app.screens import (
+    EpilogueScreen,
+    OutcomeScreen,
+    SettingsScreen,
+    TableScreen,
+    TalkScreen,
+    TitleScreen,
+    WishListScreen,
+)
 from game.app.strings import load_strings
 from game.core.errors import MissingPart
 from game.render import Device, FontSet, level_named
@@ -59,6 +67,8 @@ def test_a_whole_afternoon(window) -> None:
     assert isinstance(window.screen, TitleScreen)
     title = picture(window)
     go(window, Action("confirm"))
+    assert isinstance(window.screen, WishListScreen)
+    go(window, Action("confirm"))
     assert isinstance(window.screen, TableScreen)
     assert np.abs(picture(window) - title).mean() > 5
     go(window, key("2"))
@@ -84,13 +94,13 @@ def test_a_whole_afternoon(window) -> None:
     go(window, Action("confirm"))
     assert isinstance(window.screen, OutcomeScreen)
     picture(window)
-    visits = window.session.afternoon.visits
+    talks = window.session.afternoon.talks
     go(window, Action("down"), Action("confirm"))
-    assert isinstance(window.screen, DayOverScreen)
+    assert isinstance(window.screen, EpilogueScreen)
     picture(window)
-    go(window, Action("confirm"))
+    go(window, Action("back"))
     assert isinstance(window.screen, TitleScreen)
-    assert visits == 1
+    assert talks == 1
 
 
 def test_settings_change_language_and_come_back(window, tmp_path) -> None:
@@ -107,7 +117,7 @@ def test_settings_change_language_and_come_back(window, tmp_path) -> None:
 @pytest.mark.parametrize("size", [(320, 180), (500, 500), (1000, 360), (360, 640)])
 def test_any_shape_of_window(window, size) -> None:
     window.device.resize(*size)
-    go(window, Action("confirm"), key("1"))
+    go(window, Action("confirm"), Action("confirm"), key("1"))
     hear_out(window)
     assert picture(window).shape == (size[1], size[0], 3)
 
@@ -117,7 +127,7 @@ def test_a_click_meets_what_is_drawn_there(window) -> None:
     for place in ((224.0, 359.0), (224.0, 359.0)):
         action = Action("click", at=(place[0] / 2, place[1] / 2))
     go(window, action)
-    assert isinstance(window.screen, TableScreen)
+    assert isinstance(window.screen, WishListScreen)
 
 
 def test_an_unreadable_save_is_kept_and_said(tmp_path, monkeypatch) -> None:

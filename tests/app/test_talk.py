@@ -9,12 +9,15 @@ import pytest
 
 from game.app.afternoon import Afternoon, finish_talk, visit_stall
 from game.app.autoplay import play_episode
+from game.app.bazaar import load_bazaar
 from game.app.cli import main
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import POLICIES
-from game.app.saves import load_game, save_game
+from game.app.saves import SavedGame, load_game, save_game
 from game.app.talk import Choice, ask_money, choose, start_talk
 from game.core.errors import BadInput
+
+BAZAAR = load_bazaar()
 
 
 @pytest.fixture(scope="module")
@@ -61,9 +64,10 @@ def test_a_save_in_the_middle_changes_nothing(assets, tmp_path) -> None:
         first = next(play_episode(assets, POLICIES["oracle"], 11, episode))[0]
         state = first
         for (choice_id, offer), expected in zip(moves, straight, strict=True):
-            save_game(path, Afternoon(seed=4), state)
-            afternoon, loaded = load_game(path, assets)
-            assert afternoon == Afternoon(seed=4)
+            save_game(path, SavedGame(Afternoon(seed=4), "flea", state))
+            saved = load_game(path, BAZAAR, {"flea": assets})
+            assert saved.afternoon == Afternoon(seed=4)
+            loaded = saved.talk
             assert loaded is not None
             state = choose(assets, loaded, Choice(choice_id, offer))
             assert summary(state) == expected
@@ -71,12 +75,12 @@ def test_a_save_in_the_middle_changes_nothing(assets, tmp_path) -> None:
 
 def test_a_save_cut_anywhere_is_refused_with_its_place_and_left_alone(assets, tmp_path) -> None:
     path = tmp_path / "save.json"
-    save_game(path, Afternoon(seed=4), start_talk(assets, first_item(assets), 5, purse=9000))
+    save_game(path, SavedGame(Afternoon(seed=4), "flea", start_talk(assets, first_item(assets), 5, purse=9000)))
     whole = path.read_bytes()
     for cut in range(0, len(whole) - 1, 97):
         path.write_bytes(whole[:cut])
         with pytest.raises(BadInput, match=r"save\.json"):
-            load_game(path, assets)
+            load_game(path, BAZAAR, {"flea": assets})
         assert path.read_bytes() == whole[:cut]
 
 
@@ -96,7 +100,7 @@ def test_a_save_cut_anywhere_is_refused_with_its_place_and_left_alone(assets, tm
 )
 def test_a_save_with_nonsense_inside_names_the_value(assets, tmp_path, pointer, value) -> None:
     path = tmp_path / "save.json"
-    save_game(path, Afternoon(seed=4), start_talk(assets, first_item(assets), 5, purse=9000))
+    save_game(path, SavedGame(Afternoon(seed=4), "flea", start_talk(assets, first_item(assets), 5, purse=9000)))
     data = json.loads(path.read_text(encoding="utf-8"))
     inner = data
     for key in pointer[:-1]:
@@ -104,7 +108,7 @@ def test_a_save_with_nonsense_inside_names_the_value(assets, tmp_path, pointer, 
     inner[pointer[-1]] = value
     path.write_text(json.dumps(data), encoding="utf-8")
     with pytest.raises(BadInput) as caught:
-        load_game(path, assets)
+        load_game(path, BAZAAR, {"flea": assets})
     assert f":/{pointer[0]}" in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -125,10 +129,11 @@ def test_an_afternoon_books_its_talks(assets) -> None:
     state = visit_stall(assets, afternoon, item)
     state = choose(assets, state, Choice("offer", ask_money(state.list_price, state.bargain.ask)))
     assert state.deal_price == state.list_price
-    after = finish_talk(assets, afternoon, state)
-    assert after.owned == {item}
+    after = finish_talk(BAZAAR, assets, afternoon, state, minutes=12)
+    assert after.owned("flea") == {item}
     assert after.purse == afternoon.purse - state.deal_price
-    assert after.visits == 1
+    assert after.talks == 1
+    assert after.minutes == 12
     again = visit_stall(assets, after, sorted(assets.script.items)[1])
     assert again.visit == 2
 

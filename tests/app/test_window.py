@@ -130,26 +130,29 @@ def drawn(desk: Desk) -> bool:
 
 
 def test_a_game_from_the_title_to_a_deal_and_to_a_refusal(open_desk) -> None:
-    desk = open_desk("--seed", "3")
+    desk = open_desk("--seed", "3", "--stall", "flea")
     desk.until(lambda: drawn(desk), "the first picture")
     title = desk.screen().astype(int)
 
     desk.click(224, 359)  # Go to the market
-    desk.until(lambda: float(np.abs(desk.screen().astype(int) - title)[:, 440:].mean()) > 8, "the table")
+    desk.until(lambda: float(np.abs(desk.screen().astype(int) - title)[:, 440:].mean()) > 8, "the list")
+    sheet = desk.screen().astype(int)
+    desk.send("key", "space")  # fold it up
+    desk.until(lambda: float(np.abs(desk.screen().astype(int) - sheet).mean()) > 8, "the table")
     desk.click(1066, 128)  # the first thing on the list
     desk.until(lambda: bool(desk.saved().get("talk")), "the talk")
 
     # Hear her out, set the dial to the asking price (P), and offer it (B).
     desk.until(lambda: bool(desk.saved()["afternoon"]["bought"]), "the deal", keys=("space", "p", "b"))
     first = desk.saved()["afternoon"]
-    assert first["visits"] == 1
-    assert first["purse"] == 9000 - first["bought"][0]["price"]
+    assert first["talks"] == 1
+    assert first["purse"] == first["budget"] - first["bought"][0]["price"]
 
     # Back to the table, the next thing, and walk away from it (G).
-    desk.until(lambda: desk.saved()["afternoon"]["visits"] == 2, "the refusal", keys=("space", "2", "space", "g"))
+    desk.until(lambda: desk.saved()["afternoon"]["talks"] == 2, "the refusal", keys=("space", "2", "space", "g"))
     second = desk.saved()["afternoon"]
     assert len(second["bought"]) == 1
-    assert second["failed_visits"] == 1
+    assert second["stalls"]["flea"]["annoyance"] == 1
     assert drawn(desk)
 
     desk.until(lambda: desk.game.poll() is not None, "the end", keys=("Escape",))

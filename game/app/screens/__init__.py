@@ -1,13 +1,17 @@
-"""The window's screens: title, table, talk, outcome, settings."""
+"""The window's screens: title, list, street, table, talk, outcome, epilogue, settings."""
 
+from game.app.screens.epilogue import EpilogueScreen
+from game.app.screens.market import MarketScreen, WalkScreen
 from game.app.screens.outcome import OutcomeScreen
-from game.app.screens.table import DayOverScreen, TableScreen
+from game.app.screens.table import TableScreen
 from game.app.screens.talk import TalkScreen
 from game.app.screens.title import SettingsScreen, TitleScreen
+from game.app.screens.wish_list import WishListScreen
 from game.app.session import Screen, Session
 
 __all__ = [
-    "DayOverScreen",
+    "EpilogueScreen",
+    "MarketScreen",
     "OutcomeScreen",
     "Screen",
     "Session",
@@ -15,4 +19,6 @@ __all__ = [
     "TableScreen",
     "TalkScreen",
     "TitleScreen",
+    "WalkScreen",
+    "WishListScreen",
 ]

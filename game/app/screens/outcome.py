@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from game.app.afternoon import finish_talk
 from game.app.input import Action
 from game.app.session import MenuScreen, Screen, Session
 from game.app.talk import TalkState, ask_money
 from game.app.ui import FEELING_COLOURS, INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.app.world import Mark, leave_talk
+from game.app.world import Mark
 from game.core.emotion_space import SIX
 
 __all__ = ["OutcomeScreen"]
@@ -35,18 +34,18 @@ class OutcomeScreen(MenuScreen):
         talk = session.world.talk
         assert talk is not None
         screen = OutcomeScreen(talk, session.world.marks, Buttons())
-        session.afternoon = finish_talk(session.assets.talk, session.afternoon, talk)
-        session.world = leave_talk(session.world)
+        session.end_talk()
         return screen
 
     def handle(self, session: Session, action: Action) -> Screen | None:
-        from game.app.screens.table import DayOverScreen, TableScreen
+        from game.app.screens.epilogue import EpilogueScreen
+        from game.app.screens.table import TableScreen
 
         pressed = self.buttons.handle(action)
         if pressed == "to_stall" or action.kind == "back":
             return TableScreen()
         if pressed == "leave_market":
-            return DayOverScreen()
+            return EpilogueScreen()
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from game.app.afternoon import Afternoon
 from game.app.input import Action
 from game.app.session import MenuScreen, Screen, Session
 from game.app.settings import CHOICES, Settings, save_settings
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.app.world import leave_talk
 
 __all__ = ["SettingsScreen", "TitleScreen"]
 
@@ -18,18 +16,15 @@ class TitleScreen(MenuScreen):
     """Where the game begins and where an afternoon ends."""
 
     def __init__(self) -> None:
-        self._buttons = Buttons(focus="play")
+        self._buttons = Buttons()
 
     def handle(self, session: Session, action: Action) -> Screen | None:
         pressed = self._buttons.handle(action)
         if action.kind == "back":
             session.running = False
         elif pressed == "play":
-            from game.app.screens.table import TableScreen
-
-            session.afternoon = Afternoon(seed=session.world.seed)
-            session.world = leave_talk(session.world)
-            return TableScreen()
+            session.open_day()
+            return first_screen(session)
         elif pressed == "continue":
             from game.app.screens.table import TableScreen
 
@@ -56,7 +51,7 @@ class TitleScreen(MenuScreen):
             canvas.text(left, top + i * size * 1.1, row, size, PALETTE["white"], font="title")
         canvas.text(left, 268, s("subtitle"), 17, fade(PALETTE["paper_warm"], 0.98))
         entries = ["play"]
-        if session.world.talk is not None or session.afternoon.visits:
+        if session.world.talk is not None or session.afternoon.wishes:
             entries.insert(0, "continue")
         entries += ["language", "settings", "quit"]
         self._buttons.lay(
@@ -65,6 +60,15 @@ class TitleScreen(MenuScreen):
         self._buttons.draw(canvas)
         if session.message:
             canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
+
+
+def first_screen(session: Session) -> Screen:
+    """Where a day begins: the list over the street, or the only table there is."""
+    from game.app.screens.market import MarketScreen
+    from game.app.screens.table import TableScreen
+    from game.app.screens.wish_list import WishListScreen
+
+    return WishListScreen(MarketScreen() if len(session.market.order) > 1 else TableScreen())
 
 
 class SettingsScreen(MenuScreen):

@@ -1,0 +1,83 @@
+"""Before the first picture: settings, the first stall, the other stalls behind it, and the game that was saved last."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from game.app.afternoon import Afternoon
+from game.app.bazaar import load_bazaar
+from game.app.loading import load_step_assets
+from game.app.market import Market, Stall, StallLoader, read_stall
+from game.app.saves import load_game
+from game.app.session import Session
+from game.app.settings import load_settings, user_folder
+from game.app.step import new_world
+from game.app.strings import load_strings
+from game.app.world import leave_talk
+from game.core.errors import BadInput
+
+__all__ = ["open_session", "resume_game", "take_up"]
+
+AUTOSAVE = "autosave.json"
+
+
+def open_session(args: argparse.Namespace) -> Session:
+    """Settings, assets and world; the saved game is taken up once every stall's dialogue has been read.
+
+    ``args.stall`` None opens the whole market; a name or a dialogue file opens that stall alone.
+    """
+    settings, message = load_settings()
+    if args.language:
+        settings = replace(settings, language=args.language)
+    bazaar = load_bazaar()
+    first = args.stall or bazaar.stalls[0]
+    assets = load_step_assets(first)
+    # A designer's own stall may be played before there are pictures of it.
+    stall = Stall("", assets) if args.stall is None else read_stall(first, assets, stand_in=True)
+    stall.id = assets.talk.script.stall
+    others = () if args.stall else bazaar.stalls[1:]
+    market = Market(bazaar, {stall.id: stall}, expected=(stall.id, *others))
+    seed = args.seed if args.seed is not None else int(time.time()) & 0x7FFFFFFF
+    world = leave_talk(
+        replace(new_world(assets, seed, language=settings.language, text_speed=settings.text_speed), mode=args.mode)
+    )
+    strings = load_strings(settings.language)
+    session = Session(assets, world, strings, settings, Afternoon(seed=seed), market, message=message or "")
+    if args.overlay:
+        session.overlays |= {"feelings", "units"}
+    if others:
+        session.loader = StallLoader(market, others, assets)
+    else:
+        take_up(session)
+    return session
+
+
+def take_up(session: Session) -> None:
+    """Continue the game saved last, if any. A save that cannot be read is kept beside, never overwritten unseen."""
+    session.taken_up = True
+    path = user_folder() / AUTOSAVE
+    if not path.exists():
+        return
+    try:
+        resume_game(session, path)
+    except BadInput as error:
+        aside = path.with_suffix(".unreadable.json")
+        try:
+            os.replace(path, aside)
+        except OSError:
+            aside = path
+        session.message = session.strings("save_kept", reason=str(error)[:120])
+
+
+def resume_game(session: Session, path: Path) -> None:
+    """Take a saved game up. Raises BadInput where it cannot be read; nothing has changed then."""
+    saved = load_game(path, session.market.bazaar, session.market.talks())
+    session.afternoon = saved.afternoon
+    if saved.stall in session.market.stalls:
+        session.go_to(saved.stall)
+    if saved.talk is not None:
+        session.resume_talk(saved.talk, saved.marks)

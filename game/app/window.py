@@ -1,0 +1,189 @@
+"""The window's inside: actions in, fixed ticks, one frame out. Everything it does to the game is an Intent."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from game.app.cards import Cards
+from game.app.director import direct, moment_of, start_direction
+from game.app.gallery import Gallery
+from game.app.input import Action
+from game.app.market import read_stage
+from game.app.opening import AUTOSAVE, take_up
+from game.app.saves import SavedGame, save_game
+from game.app.screens import TalkScreen, TitleScreen
+from game.app.session import Screen, Session
+from game.app.settings import user_folder
+from game.app.stage import StageAssets, StageShow
+from game.app.step import step
+from game.app.ui import Canvas
+from game.app.world import TICK_S, Intent
+from game.core.errors import BadInput
+from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Renderer
+
+__all__ = ["Window"]
+
+MAX_TICKS_A_FRAME = 5
+"""After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
+
+
+class Window:
+    """The window loop's body, the same with and without a real window."""
+
+    def __init__(self, session: Session, device: Device, level: Level | None = None) -> None:
+        self.session = session
+        self.device = device
+        self.stage = self._stage_here()
+        self._stall = session.stall
+        self.renderer = Renderer(
+            device,
+            self.stage.model,
+            self.stage.stall,
+            self.stage.backdrop,
+            level=level or DEFAULT,
+            fonts=FontSet.for_language("en"),
+        )
+        self.gallery = Gallery(device)
+        self.cards = Cards(device, self.gallery)
+        self.show = StageShow(self.stage)
+        self.screen: Screen = TitleScreen()
+        self.direction = start_direction(session.stall)
+        self._language = _speakable(session)
+        self._late_s = 0.0
+        self._tick(None)
+
+    def close(self) -> None:
+        """Give the GL objects back."""
+        self.gallery.release()
+        self.renderer.release()
+
+    def handle(self, action: Action) -> None:
+        """One action of the player."""
+        if action.kind == "quit":
+            self.session.running = False
+            return
+        if action.kind == "key" and action.key == "f11":
+            self.session.settings = self.session.settings.next("fullscreen")
+            return
+        self._go(self.screen.handle(self.session, self._in_reference(action)))
+
+    def _in_reference(self, action: Action) -> Action:
+        if action.at is None:
+            return action
+        scale = min(self.device.size[0] / 1280.0, self.device.size[1] / 720.0)
+        return replace(action, at=(action.at[0] / scale, action.at[1] / scale))
+
+    def _go(self, screen: Screen | None) -> None:
+        if screen is not None:
+            self.screen = screen
+            self._autosave()
+
+    def _autosave(self) -> None:
+        session = self.session
+        if not session.taken_up or not session.afternoon.wishes:
+            return  # nothing has begun that could be lost, and something may be saved that has
+        try:
+            save_game(user_folder() / AUTOSAVE, saved_game(session))
+        except BadInput as error:
+            session.message = str(error)
+
+    def _stage_here(self) -> StageAssets:
+        stall = self.session.market.stalls[self.session.stall]
+        if stall.stage is None:
+            stall.stage = read_stage(stall)
+        return stall.stage
+
+    def _follow(self) -> None:
+        """Take in what has been loaded, and draw the stall the player stands at."""
+        session = self.session
+        if session.loader is not None:
+            session.loader.poll()
+            if session.loader.scripts_read and not session.taken_up:
+                take_up(session)
+        if session.stall != self._stall:
+            self._stall, self.stage = session.stall, self._stage_here()
+            self.renderer.set_stage(self.stage.model, self.stage.stall, self.stage.backdrop)
+            self.show = StageShow(self.stage)
+
+    def _tick(self, intent_from: Screen | None) -> None:
+        session = self.session
+        self._follow()
+        intent = Intent() if intent_from is None else intent_from.intent()
+        session.world = step(session.assets, session.world, intent)
+        assert session.world.body.pose is not None
+        self.show.tick(session.world.body.pose, TICK_S)
+        if intent.choice is not None:
+            self._autosave()
+        self._go(self.screen.after_tick(session))
+        self._direct()
+
+    def _direct(self) -> None:
+        session, screen = self.session, self.screen
+        offering = isinstance(screen, TalkScreen) and screen.offering
+        moment = moment_of(session.world, screen.scene, place=session.stall, offering=offering)
+        self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
+
+    def advance(self, elapsed_s: float) -> None:
+        """Let the game run for some real time, in whole ticks."""
+        self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
+        while self._late_s >= TICK_S:
+            self._late_s -= TICK_S
+            self._tick(self.screen)
+
+    def draw(self) -> None:
+        """One frame of whatever is on screen."""
+        session = self.session
+        self._follow()
+        if session.settings.language != self._language:
+            self._language = _speakable(session)
+        if self.show.puppet is None:
+            self._tick(None)  # a stall was just reached: nobody has moved there yet
+        self._paint_pictures()
+        params = session.world.body.face_params
+        assert params is not None
+        view = self.show.frame(
+            params,
+            camera=self.direction.camera(session.world.time_s + self._late_s),
+            share=self._late_s / TICK_S,
+            show_face=session.world.mode != "body",
+            hidden_items=self.stage.gone(session.afternoon.owned(session.stall)),
+            time_s=session.world.time_s,
+            hud=self._draw_hud,
+        )
+        self.renderer.draw(view)
+
+    def _paint_pictures(self) -> None:
+        """Pictures of the stalls for the map: one a frame, where a hitch is not seen."""
+        market = self.session.market
+        if self.screen.scene not in {"title", "market"} or len(market.order) < 2:
+            return
+        if "backdrop" not in self.gallery.names():
+            self.gallery.put("backdrop", self.stage.backdrop)
+        stalls = [market.stalls[name] for name in market.order if name in market.stalls]
+        owned = {stall.id: self.session.afternoon.owned(stall.id) for stall in stalls}
+        self.cards.paint_next(stalls, owned, self.renderer.level, self.session.afternoon.seed)
+
+    def _draw_hud(self, hud: Hud) -> None:
+        settings = self.session.settings
+        self.screen.draw(self.session, Canvas(hud, settings.language, settings.ui_scale, self.gallery))
+
+
+def saved_game(session: Session) -> SavedGame:
+    """What a save holds of the running game; a talk that has ended is booked, not saved."""
+    world = session.world
+    if world.talk is None or world.talk.ended:
+        return SavedGame(session.afternoon, session.stall)
+    return SavedGame(session.afternoon, session.stall, world.talk, world.marks)
+
+
+def _speakable(session: Session) -> str:
+    """The language there is a font for: without a Japanese one the game says so and stays in English."""
+    if session.settings.language == "ja":
+        try:
+            FontSet.for_language("ja")
+        except MissingFont as error:
+            session.message = str(error)
+            session.settings = replace(session.settings, language="en")
+            session.strings = session.strings.switched("en")
+            session.world = replace(session.world, language="en")
+    return session.settings.language
