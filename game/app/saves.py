@@ -16,8 +16,6 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from game.app.afternoon import Afternoon, Bought, Reading, StallDay, Wish, lesson_of, visit_stall
 from game.app.bazaar import Bazaar
 from game.app.save_reader import SaveReader, read_json
@@ -123,7 +121,7 @@ def retrace(
             state = after
     except BadInput:
         return ()
-    same = state.bargain == talk.bargain and np.array_equal(state.feeling.felt, talk.feeling.felt)
+    same = state.bargain == talk.bargain and state.feeling.six == talk.feeling.six
     return tuple(marks) if same else ()
 
 

@@ -88,9 +88,7 @@ def story_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         assert world.talk.beat.timer is not None
         choice = Choice(world.talk.beat.timer.choice)
     talk = choose(assets.talk, world.talk, choice)
-    mark = next_mark(
-        assets.talk, world.talk, talk, choice, intent.guess, number=len(world.marks), time_s=world.time_s
-    )
+    mark = next_mark(assets.talk, world.talk, talk, choice, intent.guess, number=len(world.marks), time_s=world.time_s)
     return replace(world, talk=talk, queue=talk.beat.lines, marks=(*world.marks, mark), waited=0)
 
 

@@ -19,7 +19,7 @@ from game.app.step import step
 from game.app.ui import Canvas
 from game.app.world import TICK_S, Intent
 from game.core.errors import BadInput
-from game.render import DEFAULT, Device, FontSet, Hud, Level, MissingFont, Renderer
+from game.render import DEFAULT, DESIGN_SHARE, Device, FontSet, Hud, Level, MissingFont, Renderer
 
 __all__ = ["Window"]
 
@@ -148,6 +148,7 @@ class Window:
             show_face=session.world.mode != "body",
             hidden_items=self.stage.gone(session.afternoon.owned(session.stall)),
             time_s=session.world.time_s,
+            day_share=session.day_share if session.afternoon.wishes else DESIGN_SHARE,
             hud=self._draw_hud,
         )
         self.renderer.draw(view)

@@ -175,7 +175,7 @@ def next_mark(
         choice=move,
         guess=guess,
         label=str(record["felt_label"]),
-        face=EMOTIONS[label_index(shown[:6], assets.feelings.label_threshold)],
+        face=EMOTIONS[label_index(shown[:6].tolist(), assets.feelings.label_threshold)],
         ask=after.bargain.ask,
         time_s=time_s,
     )

@@ -20,9 +20,7 @@ TITLES = {"antiques": "Aoyagi & Sons", "toys": "The Bright Side"}
 
 def copies(folder: Path) -> dict[str, Path]:
     """The shipped stall's dialogue as three files with three stall ids, rules and people beside them."""
-    for name in ("rules.yaml", "faces.yaml"):
-        shutil.copy(DIALOGUE / name, folder / name)
-    shutil.copytree(DIALOGUE / "people", folder / "people", dirs_exist_ok=True)
+    shutil.copytree(DIALOGUE, folder, dirs_exist_ok=True)
     text = (DIALOGUE / "flea.yaml").read_text(encoding="utf-8")
     out = {}
     for name in NAMES:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.app.market_kit import NAMES, copies, three_stalls
 
 from game.app.afternoon import Afternoon, finish_talk, is_closed, next_day, open_day, pass_time, visit_stall, walk_to
 from game.app.bazaar import load_bazaar
@@ -16,6 +15,7 @@ from game.app.market import Market, StallLoader
 from game.app.talk import Choice, ask_money, choose
 from game.app.wishes import load_wishes
 from game.core.errors import BadInput
+from tests.app.market_kit import NAMES, copies, three_stalls
 
 BAZAAR = load_bazaar()
 
@@ -184,7 +184,7 @@ def test_a_save_knows_the_whole_afternoon(tmp_path, scripts) -> None:
     from game.app.saves import SavedGame, load_game, save_game
 
     assets = {s.stall: load_talk_assets(path) for s, path in zip(scripts, copies(tmp_path).values(), strict=True)}
-    day = pass_time(BAZAAR, replace(open_day(BAZAAR, scripts, 8), place="toys", variables={"gossip": 2.0}), 30)
+    day = pass_time(BAZAAR, replace(open_day(BAZAAR, scripts, 8), place="toys", shared={"gossip": 2.0}), 30)
     talk = visit_stall(assets["toys"], day, "vase")
     after = finish_talk(BAZAAR, assets["toys"], day, choose(assets["toys"], talk, Choice("leave")), 4)
     save_game(tmp_path / "x.json", SavedGame(after, "toys"))
