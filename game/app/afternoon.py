@@ -17,10 +17,12 @@ from game.story import Memory, Script, afternoon_of, memory_of
 from game.story.vocabulary import Value
 
 __all__ = [
-    "Afternoon", "Bought", "Reading", "StallDay", "Wish", "finish_talk", "is_closed", "lesson_of", "next_day",
+    "PURSE", "Afternoon", "Bought", "Reading", "StallDay", "Wish", "finish_talk", "is_closed", "lesson_of", "next_day",
     "open_day", "pass_time", "talk_minutes", "visit_stall", "walk_to",
 ]  # fmt: skip
 
+PURSE = 9000
+"""Yen in the purse on an ordinary day, what the checks of a script reckon with."""
 MIN_PURSE = 3000
 """Yen there are in the purse at least, however short the wish list."""
 
@@ -86,8 +88,8 @@ class Afternoon:
 
     seed: int
     day: int = 1
-    purse: int = 9000
-    budget: int = 9000
+    purse: int = PURSE
+    budget: int = PURSE
     minutes: float = 0.0
     place: str = ""
     talks: int = 0
