@@ -4,10 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from game.tools.modelling.goods_antiques import lacquer_box, pocket_watch, tea_bowl
 from game.tools.modelling.goods_flea import FLEA_GOODS
+from game.tools.modelling.goods_heirlooms import folding_fan, incense_burner
+from game.tools.modelling.goods_scholar import ink_stone, noh_mask
 from game.tools.modelling.goods_shapes import Good
 
 __all__ = ["GOODS"]
 
-GOODS: Mapping[str, Good] = {**FLEA_GOODS}
+GOODS: Mapping[str, Good] = {
+    **FLEA_GOODS,
+    "pocket_watch": pocket_watch,
+    "lacquer_box": lacquer_box,
+    "tea_bowl": tea_bowl,
+    "folding_fan": folding_fan,
+    "incense_burner": incense_burner,
+    "ink_stone": ink_stone,
+    "noh_mask": noh_mask,
+}
 """Item id -> its parts, about the point (0, 0, 0) where it stands, facing +Z."""

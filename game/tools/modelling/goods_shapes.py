@@ -18,15 +18,18 @@ __all__ = [
     "Good",
     "banded",
     "cord",
+    "cut_below",
     "disc",
     "inlay",
     "leaning",
     "onto",
     "part",
     "solid",
+    "spun",
     "standing",
     "star",
     "stroke",
+    "tassel",
     "turned",
 ]
 
@@ -48,6 +51,11 @@ def standing(field: Field) -> Field:
     return lambda p: smooth_max(field(p), 0.001 - p[:, 1], 0.006)
 
 
+def cut_below(field: Field) -> Field:
+    """Cut flat at the table, with a nearly sharp edge."""
+    return lambda p: smooth_max(field(p), 0.0005 - p[:, 1], 0.003)
+
+
 def turned(profile: Sequence[tuple[float, float]], sides: int = 40, rounds: int = 7) -> Mesh:
     """A lathe body through a few outline points, smoothed."""
     return lathe(smooth_curve(profile, rounds * len(profile) + 8), sides)
@@ -57,6 +65,17 @@ def stroke(points: Sequence[Corner], half_width: float, half_thickness: float, c
     """A painted line: a thin ribbon through the points, facing +Z."""
     path = smooth_curve(np.array(points), count)
     return loft(path, np.tile([0.0, 0.0, 1.0], (count, 1)), half_width, half_thickness, 5, "round")
+
+
+def spun(profile: Sequence[tuple[float, float]], sides: int, steps: int) -> Mesh:
+    """A lathe body through a few outline points, smoothed into ``steps`` rings."""
+    return lathe(smooth_curve(profile, steps), sides)
+
+
+def tassel(length: float, radius: float) -> Mesh:
+    """A bundle of threads below (0, 0, 0), tied near the top."""
+    outline = [(0.08, -1.0), (1.0, -0.97), (0.72, -0.30), (0.56, -0.17), (0.74, -0.02), (0.08, 0.10)]
+    return spun([(r * radius, y * length) for r, y in outline], 12, 12)
 
 
 def cord(points: ArrayLike, radius: ArrayLike, count: int, sides: int = 6) -> Mesh:

@@ -37,6 +37,7 @@ from game.tools.modelling.mesh import Mesh, joined
 from game.tools.modelling.parts import Part
 from game.tools.modelling.pieces import Moving, Piece, read_piece
 from game.tools.modelling.spec import Swatch, read_palette
+from game.tools.modelling.stall_back import FoldingScreen, Shelf
 from game.tools.modelling.stall_front import Boards, Front, Runner, Tray
 from game.tools.modelling.stall_roof import Awning, Bulbs, Bunting, Lanterns, Noren
 
@@ -52,6 +53,8 @@ PIECES: Mapping[str, type[Any]] = {
     "bunting": Bunting,
     "noren": Noren,
     "lanterns": Lanterns,
+    "folding_screen": FoldingScreen,
+    "shelf": Shelf,
 }
 """What ``piece`` may name in a stall's YAML."""
 
@@ -122,7 +125,7 @@ def _placing(row: Node) -> Placing:
     item = row["item"]
     if item.as_str() not in GOODS:
         raise item.error(expected=" | ".join(GOODS))
-    numbers = {key: [n.as_float(-10, 360) for n in row[key]] for key in ("at", "shadow", "card") if row.get(key)}
+    numbers = {key: [n.as_float(-360, 360) for n in row[key]] for key in ("at", "shadow", "card") if row.get(key)}
     for key, count in (("at", 2), ("shadow", 2), ("card", 3)):
         if key in numbers and len(numbers[key]) != count:
             raise row[key].error(expected=f"{count} numbers")
