@@ -59,7 +59,8 @@ def pocket_watch() -> list[Part]:
             b = (s * 0.0455 + c * side, c * 0.0455 - s * side, 0.0095)
             m = tuple((p + q) / 2 for p, q in zip(a, b, strict=True))
             watch.append(("numeral", "ink", stroke([a, (m[0], m[1], m[2]), b], width * 0.42, 0.0006, 3), 0.0))
-    for angle, length, width in ((0.93, 0.026, 0.0027), (-0.95, 0.040, 0.0021)):
+    # Ten to two.
+    for angle, length, width in ((0.96, 0.026, 0.0027), (-1.047, 0.040, 0.0021)):
         s, c = float(np.sin(angle)), float(np.cos(angle))
         hand = np.array([(-0.5, -0.10), (-1.0, 0.45), (-0.35, 0.55), (0, 1.0), (0.35, 0.55), (1.0, 0.45), (0.5, -0.10)])
         outline = np.stack([hand[:, 0] * width, hand[:, 1] * length], 1) @ np.array([[c, -s], [s, c]])

@@ -18,8 +18,20 @@ from game.tools.modelling.fields import (
     subtraction,
     union,
 )
-from game.tools.modelling.goods_shapes import cord, cut_below, disc, inlay, leaning, onto, part, solid, spun, tassel
-from game.tools.modelling.lofts import lathe, loft, rounded_box, sheet
+from game.tools.modelling.goods_shapes import (
+    cord,
+    cut_below,
+    disc,
+    inlay,
+    leaning,
+    onto,
+    part,
+    solid,
+    spun,
+    star,
+    tassel,
+)
+from game.tools.modelling.lofts import lathe, loft, rounded_box, sheet, smooth_curve
 from game.tools.modelling.mesh import split_at_level
 from game.tools.modelling.parts import Part
 
@@ -73,7 +85,7 @@ def folding_fan() -> list[Part]:
         x, y = mesh.position[:, 0], mesh.position[:, 1] - _FAN_PIVOT[1]
         if not front:
             rim, plain = split_at_level(mesh, np.hypot(x, y) - 0.188)
-            parts += [part("leaf_back", "paper", plain, 1.0), part("leaf_edge", "plum", rim, 1.0)]
+            parts += [part("leaf_back", "paper", plain, 1.0), part("leaf_edge", "plum", rim, 1.0), *_poem()]
             continue
         # Painted from the top layer down, so that each figure covers those after it.
         rest = mesh
@@ -121,6 +133,29 @@ def folding_fan() -> list[Part]:
     parts.append(part("string", "silk", cord(string, 0.0017, 12), 0.4))
     threads = leaning(tassel(0.026, 0.0075), (78, 40, 0), (0.046, 0.0085, 0.046))
     parts.append(part("tassel", "silk", threads, 0.6))
+    return parts
+
+
+def _poem() -> list[Part]:
+    """Four lines in a quick hand on the back, one to a fold, from right to left as seen from there."""
+    parts = []
+    wobble = np.array([0.0, 1.0, -0.7, 0.5, -1.0, 0.8, -0.4, 0.9, -0.2])
+    for line, fold in enumerate((3, 4, 5, 6, 9)):
+        u = (fold + 0.5) / _FAN_FOLDS
+        v = np.linspace(0.86, 0.30 + 0.07 * line, 9)
+        swing = 0.010 * np.roll(wobble, line) / _FAN_FOLDS * 14 * 0.35
+        x, y, _ = _fan_leaf(0.0, u + swing * 0.6, v)
+        path = smooth_curve(np.stack([x, y, np.full(9, -0.0075)], 1), 15)
+        width = 0.0008 + 0.0012 * np.abs(np.sin(np.arange(15) * 1.9 + line))
+        parts.append(part("poem", "ink", loft(path, np.tile([0.0, 0, -1], (15, 1)), width, 0.0005, 4, "round"), 0.0))
+    seal = star(0.0, 0.0, 0.006, 4, 0.10, 1.0, 45.0)
+    x, y, _ = _fan_leaf(0.0, np.array([9.5 / _FAN_FOLDS]), np.array([0.20]))
+    at = np.array([float(x[0]), float(y[0])])
+
+    def surface(flat: Floats) -> tuple[Floats, Floats]:
+        return np.column_stack([flat, np.full(len(flat), -0.0075)]), np.tile([0.0, 0.0, -1.0], (len(flat), 1))
+
+    parts.append(part("seal", "vermilion", inlay(seal + at, surface, 0.0), 0.0))
     return parts
 
 

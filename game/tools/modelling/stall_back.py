@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from game.tools.modelling.fields import Floats
-from game.tools.modelling.goods_shapes import disc, inlay, leaning, turned
+from game.tools.modelling.goods_shapes import disc, inlay, leaning, spun
 from game.tools.modelling.lofts import lathe, rounded_box
 from game.tools.modelling.parts import Part
 from game.tools.modelling.pieces import Colour, Moving, Vector
@@ -150,7 +150,7 @@ class Shelf:
                 (0.028, 0.108),
                 (0.020, 0.106),
             ]
-            return [Part("jar", colour, turned(jar, 24, 3).placed(at), None, 0.7)]
+            return [Part("jar", colour, spun(jar, 18, 14).placed(at), None, 0.7)]
         if kind == 1:
             bowl = [
                 (0.001, 0.002),
@@ -161,7 +161,7 @@ class Shelf:
                 (0.040, 0.033),
                 (0.001, 0.012),
             ]
-            mesh = turned(bowl, 24, 3)
+            mesh = spun(bowl, 18, 9)
             return [
                 Part("bowl", (colour, second)[k % 2], mesh.placed(at + (0.003 * k, 0.021 * k, 0)), None, 0.7)
                 for k in range(3)
@@ -177,7 +177,7 @@ class Shelf:
                 (0.010, 0.130),
                 (0.014, 0.134),
             ]
-            return [Part("bottle", colour, turned(gourd, 24, 3).placed(at), None, 0.7)]
+            return [Part("bottle", colour, spun(gourd, 18, 14).placed(at), None, 0.7)]
         if kind == 3:
             parts = []
             for k, (dx, dy) in enumerate(((-0.026, 0.020), (0.022, 0.020), (-0.002, 0.058))):

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from game.tools.modelling.fields import Floats
-from game.tools.modelling.goods_shapes import cord, disc, inlay, leaning, turned
+from game.tools.modelling.goods_shapes import cord, disc, inlay, leaning, spun, tassel, turned
 from game.tools.modelling.lofts import lathe, loft, sheet
 from game.tools.modelling.mesh import Mesh, joined, split_at_level
 from game.tools.modelling.parts import Part
@@ -230,23 +230,25 @@ class Lanterns:
 
     def _lantern(self, x: float, y: float, z: float) -> list[Part]:
         r, h = self.radius, self.height / 2
-        t = np.linspace(-1.0, 1.0, 45)
+        t = np.linspace(-1.0, 1.0, 31)
         swell = r * (0.52 + 0.48 * np.sqrt(np.maximum(1 - (t * 0.94) ** 2, 0.0)))
-        body = lathe(np.stack([swell * (1 + 0.018 * np.abs(np.sin(t * np.pi * 5.5))), t * h], 1), 40)
+        body = lathe(np.stack([swell * (1 + 0.018 * np.abs(np.sin(t * np.pi * 5.0))), t * h], 1), 32)
         lower, glow = split_at_level(body, -(body.position[:, 1] + 0.45 * h))
         parts = [("paper", self.paper, glow, 0.9), ("paper", self.shadow, lower, 0.9)]
-        for k in range(12):
-            level = (k - 5.5) / 5.5 * 0.985
+        for k in range(11):
+            level = (k - 5.0) / 5.0 * 0.985
             at = r * (0.52 + 0.48 * np.sqrt(1 - (level * 0.94) ** 2))
-            angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-            ring = np.stack([at * 1.003 * np.sin(angle), np.full(40, level * h), at * 1.003 * np.cos(angle)], 1)
-            parts.append(("rib", self.rib, loft(ring, ring * (1, 0, 1), 0.0016, 0.0013, 5, "round", True), 0.0))
+            angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+            ring = np.stack([at * 1.003 * np.sin(angle), np.full(32, level * h), at * 1.003 * np.cos(angle)], 1)
+            parts.append(("rib", self.rib, loft(ring, ring * (1, 0, 1), 0.0016, 0.0013, 3, "round", True), 0.0))
         for sign in (1.0, -1.0):
-            cap = turned([(r * 0.10, -0.012), (r * 0.62, -0.012), (r * 0.64, 0.0), (r * 0.58, 0.014), (0.004, 0.015)])
+            cap = spun(
+                [(r * 0.10, -0.012), (r * 0.62, -0.012), (r * 0.64, 0.0), (r * 0.58, 0.014), (0.004, 0.015)], 24, 9
+            )
             parts.append(("cap", self.cap, leaning(cap, (0 if sign > 0 else 180, 0, 0), (0, sign * h, 0)), 0.9))
         parts.append(("cord", self.cap, cord([(0, h, 0), (0, h + 0.08, 0.001), (0, h + 0.3, 0)], 0.003, 6), 0.4))
-        tassel = turned([(0.002, -0.075), (0.013, -0.074), (0.010, -0.030), (0.008, -0.022), (0.009, -0.012)], 14, 3)
-        parts.append(("tassel", self.mark, leaning(tassel, (0, 0, 0), (0, -h - 0.012, 0)), 0.7))
+        threads = leaning(tassel(0.068, 0.013), (0, 0, 0), (0, -h - 0.016, 0))
+        parts.append(("tassel", self.mark, threads, 0.7))
 
         def surface(flat: Floats) -> tuple[Floats, Floats]:
             level = np.clip(flat[:, 1] / h, -1, 1)
