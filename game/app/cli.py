@@ -24,6 +24,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "retarget": ("game.app.retarget", "bring anyone's motion onto the project's skeleton"),
     "face": ("game.app.face", "propose, rate, fit and author faces"),
     "lint": ("game.app.lint", "check dialogue scripts"),
+    "graph": ("game.app.graph", "draw a stall's dialogue as a picture or a page"),
     "bench": ("game.app.bench", "measure speed against floors run beside it"),
     "build": ("game.app.build", "remake the generated assets, or check them"),
 }
