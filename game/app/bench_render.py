@@ -42,11 +42,12 @@ def _talk_window(device: Device) -> Window:
     args = argparse.Namespace(language="en", stall="flea", seed=1, mode="full", overlay=False)
     session: Session = open_session(args)
     window = Window(session, device)
+    window.populate()
     item = next(iter(session.assets.talk.script.items))
     talk = visit_stall(session.assets.talk, session.afternoon, item)
     session.world = enter_talk(session.assets, session.world, talk)
     window.screen = TalkScreen()
-    for _ in range(60):
+    for _ in range(180):  # until the camera rests
         window.advance(1 / 30)
     return window
 

@@ -76,6 +76,7 @@ def run(args: argparse.Namespace) -> int:
         window.draw()
         _set_icon(window)
         pygame.display.flip()
+        window.populate()
         gc.freeze()
         gc.enable()
         _choose_level(window, session.settings)

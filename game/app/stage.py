@@ -14,7 +14,7 @@ from game.app.rig import load_rig
 from game.core.paths import ASSETS
 from game.face import DrawList, FaceParams, tessellate
 from game.formats import load_yaml
-from game.render import DESIGN_SHARE, HERO, Camera, CharacterModel, FrameView, Hud, StaticMesh
+from game.render import DESIGN_SHARE, HERO, Camera, CharacterModel, CrowdView, FrameView, Hud, StaticMesh
 from game.render.assets import load_character, load_picture, load_stall
 
 __all__ = ["Puppet", "StageAssets", "StageShow", "load_stage"]
@@ -109,6 +109,7 @@ class StageShow:
         hidden_items: frozenset[str] = frozenset(),
         time_s: float = 0.0,
         day_share: float = DESIGN_SHARE,
+        crowd: CrowdView | None = None,
         hud: Callable[[Hud], None] | None = None,
     ) -> FrameView:
         """The frame as the renderer wants it."""
@@ -123,5 +124,6 @@ class StageShow:
             hidden_items=hidden_items,
             time_s=time_s,
             day_share=day_share,
+            crowd=crowd,
             hud=hud,
         )

@@ -18,6 +18,7 @@ from game.app.afternoon import Afternoon
 from game.app.loading import load_step_assets
 from game.app.market import Market
 from game.app.overlays import draw_overlays
+from game.app.passersby import Passersby, load_cast
 from game.app.session import Session
 from game.app.settings import Settings
 from game.app.shots import ESTABLISHING, SHOTS
@@ -57,6 +58,7 @@ def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--level", choices=levels, default="ultra", help="quality level (default ultra)")
     parser.add_argument("--camera", choices=sorted(CAMERAS), default=None, help="where from")
     parser.add_argument("--time-of-day", type=parse_day_share, default=None, metavar="HH:MM", help="13:00 to 18:00")
+    parser.add_argument("--crowd", action=argparse.BooleanOptionalAction, default=True, help="passers-by")
     parser.add_argument("--overlay", action="store_true", help="feelings and active nodes, as in the paper's figure 6")
     parser.add_argument("--networks", action="store_true", help="the three networks with live factors")
     parser.add_argument("--seed", type=int, default=1, help="one seed, one picture (default 1)")
@@ -98,6 +100,12 @@ class Studio:
             fonts=FontSet.for_language(args.language),
         )
         self.show = StageShow(stage)
+        self.crowd: Passersby | None = None
+        if args.crowd and self.camera is not CAMERAS["body"]:
+            cast = load_cast("mira")
+            self.renderer.meet(cast.looks)
+            assert assets.performer is not None
+            self.crowd = Passersby(cast, assets.planner, assets.performer, args.seed)
         self._run(WARM_UP_S)
         if args.say:
             line = Spoken(id="say", speaker="shopkeeper", en=args.say, ja=args.say)
@@ -117,6 +125,8 @@ class Studio:
         self.session.world = step(self.session.assets, self.session.world, intent)
         assert self.session.world.body.pose is not None
         self.show.tick(self.session.world.body.pose, TICK_S)
+        if self.crowd is not None:
+            self.crowd.tick(self.session.world)
 
     def begin(self, world: World) -> None:
         """Another world from its first tick on; nothing of the old one is left in cloth and hair."""
@@ -133,6 +143,7 @@ class Studio:
             show_face=world.mode != "body",
             time_s=world.time_s,
             day_share=self.day_share,
+            crowd=None if self.crowd is None else self.crowd.view(1.0),
             hud=self._draw_hud,
         )
         self.renderer.draw(view)

@@ -10,6 +10,7 @@ from game.app.gallery import Gallery
 from game.app.input import Action
 from game.app.market import read_stage
 from game.app.opening import AUTOSAVE, take_up
+from game.app.passersby import Known, Passersby, load_cast
 from game.app.saves import SavedGame, save_game
 from game.app.screens import TalkScreen, TitleScreen
 from game.app.session import Screen, Session
@@ -48,9 +49,19 @@ class Window:
         self.show = StageShow(self.stage)
         self.screen: Screen = TitleScreen()
         self.direction = start_direction(session.stall)
+        self.crowd: Passersby | None = None
+        self._models: Known = {}
         self._language = _speakable(session)
         self._late_s = 0.0
         self._tick(None)
+
+    def populate(self) -> None:
+        """Passers-by from now on: they are not needed for the first picture, so they come after it."""
+        assets = self.session.assets
+        assert assets.performer is not None
+        cast = load_cast(self.stage.model.name, known=self._models)
+        self.renderer.meet(cast.looks)
+        self.crowd = Passersby(cast, assets.planner, assets.performer, self.session.world.seed)
 
     def close(self) -> None:
         """Give the GL objects back."""
@@ -104,6 +115,8 @@ class Window:
             self._stall, self.stage = session.stall, self._stage_here()
             self.renderer.set_stage(self.stage.model, self.stage.stall, self.stage.backdrop)
             self.show = StageShow(self.stage)
+            if self.crowd is not None:
+                self.populate()
 
     def _tick(self, intent_from: Screen | None) -> None:
         session = self.session
@@ -112,6 +125,8 @@ class Window:
         session.world = step(session.assets, session.world, intent)
         assert session.world.body.pose is not None
         self.show.tick(session.world.body.pose, TICK_S)
+        if self.crowd is not None and self.renderer.level.people:
+            self.crowd.tick(session.world)
         if intent.choice is not None:
             self._autosave()
         self._go(self.screen.after_tick(session))
@@ -147,7 +162,8 @@ class Window:
             share=self._late_s / TICK_S,
             show_face=session.world.mode != "body",
             hidden_items=self.stage.gone(session.afternoon.owned(session.stall)),
-            time_s=session.world.time_s,
+            time_s=session.world.time_s + self._late_s,
+            crowd=None if self.crowd is None else self.crowd.view(self._late_s / TICK_S),
             day_share=session.day_share if session.afternoon.wishes else DESIGN_SHARE,
             hud=self._draw_hud,
         )

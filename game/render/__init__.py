@@ -2,6 +2,7 @@
 
 from game.render.assets import load_character, load_picture, load_stall, save_png
 from game.render.camera import CLOSEUP, HERO, Camera
+from game.render.crowd import CrowdLook, CrowdMesh, CrowdView, dressed, load_crowd_mesh
 from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device
 from game.render.hud import Colour, Hud, rgba
@@ -21,6 +22,9 @@ __all__ = [
     "CharacterMesh",
     "CharacterModel",
     "Colour",
+    "CrowdLook",
+    "CrowdMesh",
+    "CrowdView",
     "Device",
     "FontSet",
     "FrameView",
@@ -29,8 +33,10 @@ __all__ = [
     "MissingFont",
     "Renderer",
     "StaticMesh",
+    "dressed",
     "level_named",
     "load_character",
+    "load_crowd_mesh",
     "load_picture",
     "load_stall",
     "pick_level",

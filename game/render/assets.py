@@ -29,7 +29,7 @@ from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
 
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
 
-__all__ = ["load_character", "load_picture", "load_stall", "save_png"]
+__all__ = ["character_parts", "load_character", "load_picture", "load_stall", "save_png"]
 
 
 def load_character(vrm: Path) -> CharacterModel:
@@ -57,6 +57,18 @@ def load_character(vrm: Path) -> CharacterModel:
         missing = "a mesh" if not meshes else "a node with extras.shadow in its .lod.glb"
         raise BadInput("character", where=Where(vrm), expected=missing, seen="none")
     return CharacterModel(vrm.stem, meshes, shadow, joint_count)
+
+
+def character_parts(vrm: Path) -> list[Part]:
+    """The parts of the coarsest level of detail beside ``<id>.vrm``. Raises BadInput."""
+    path = vrm.with_suffix("").with_suffix(".lod.glb")
+    file = read_gltf(path)
+    levels = {
+        int(extras["lod"]): node for node, extras in _mesh_nodes(file) if "lod" in extras and not extras.get("shadow")
+    }
+    if not levels or not file.skins:
+        raise BadInput("character", where=Where(path), expected="a level of detail with a skin", seen="none")
+    return [_part(file, primitive, "body") for primitive in _primitives(file, levels[min(levels)])]
 
 
 def load_stall(path: Path) -> StaticMesh:

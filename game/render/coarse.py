@@ -15,7 +15,7 @@ __all__ = ["coarser", "loose_pieces"]
 def coarser(part: Part, cell_m: float) -> Part:
     """The part with the vertices of every cube of ``cell_m`` metres made one; triangles that collapse are dropped.
 
-    Positions and normals become the mean of the joined vertices; skinning and extras are those of the first of them.
+    Positions, normals and extras become the mean of the joined vertices; skinning is that of the first of them.
     """
     grid = np.floor(part.position.astype(np.float64) / cell_m).astype(np.int64)
     grid -= grid.min(axis=0)
@@ -26,10 +26,12 @@ def coarser(part: Part, cell_m: float) -> Part:
     _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
     cluster = cluster.ravel()
     count = np.bincount(cluster)
-    position, normal = (
-        np.stack([np.bincount(cluster, values[:, i]) for i in range(3)], axis=1) / count[:, None]
-        for values in (part.position, part.normal)
-    )
+
+    def mean(values: NDArray[np.float32]) -> NDArray[np.float64]:
+        columns = [np.bincount(cluster, values[:, i]) for i in range(values.shape[1])]
+        return np.asarray(np.stack(columns, axis=1) / count[:, None])
+
+    position, normal = mean(part.position), mean(part.normal)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
     triangle = cluster[part.triangle]
     a, b, c = triangle.T
@@ -45,7 +47,7 @@ def coarser(part: Part, cell_m: float) -> Part:
         triangle=np.unique(turned, axis=0).astype(np.uint32),
         joint=None if part.joint is None else part.joint[first],
         weight=None if part.weight is None else part.weight[first],
-        extra=None if part.extra is None else part.extra[first],
+        extra=None if part.extra is None else mean(part.extra).astype(np.float32),
     )
 
 

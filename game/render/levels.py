@@ -22,15 +22,16 @@ class Level:
     shadow_taps: int
     shadow_every: int  # frames between two shadow maps
     face_size: int
+    people: int  # passers-by
     line_px: float = 1.7  # outline width in a picture 720 pixels high
 
 
 LEVELS: tuple[Level, ...] = (
-    Level("low", 0, 15_000, 512, 1, 2, 512),
-    Level("medium", 0, 25_000, 512, 1, 2, 512),
-    Level("default", 0, 40_000, 768, 2, 2, 512),
-    Level("high", 4, 25_000, 768, 1, 2, 512),
-    Level("ultra", 4, 40_000, 768, 2, 1, 1024),
+    Level("low", 0, 15_000, 512, 1, 2, 512, 0),
+    Level("medium", 0, 25_000, 512, 1, 2, 512, 3),
+    Level("default", 0, 40_000, 768, 2, 2, 512, 6),
+    Level("high", 4, 25_000, 768, 1, 2, 512, 6),
+    Level("ultra", 4, 40_000, 768, 2, 1, 1024, 8),
 )
 DEFAULT = LEVELS[2]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 
 from game.face.mesh import DrawList
 from game.render.character_drawing import CharacterDrawing
+from game.render.crowd import CrowdLook
+from game.render.crowd_drawing import CrowdDrawing
 from game.render.daylight import DESIGN_SHARE, stepped
 from game.render.device import PREMULTIPLIED, Device, Owner
 from game.render.face_painter import FACE_MM, FacePainter, hidden_face
@@ -71,6 +74,7 @@ class Renderer(Owner):
         self._character: CharacterDrawing | None = None
         self._painter: FacePainter | None = None
         self._moving: MovingDrawing | None = None
+        self._crowd: CrowdDrawing | None = None
         self._moving_meshes = stall.moving if stall is not None else ()
         # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
         self.drafts = device.windowed
@@ -89,6 +93,7 @@ class Renderer(Owner):
         self._scene.release()
         self._scene = self.own(SceneDrawing(self.device, stall, backdrop))
         self._model, self._face = model, None
+        self._moving_meshes = stall.moving if stall is not None else ()
         self.set_level(self.level)
 
     def set_level(self, level: Level) -> None:
@@ -109,7 +114,14 @@ class Renderer(Owner):
         self._canvas = self._character = self._painter = self._moving = None
         self._light = self._shown = None
 
+    def meet(self, looks: Sequence[CrowdLook]) -> None:
+        """Passers-by from now on: a frame's ``crowd`` has their matrices, in this order."""
+        if self._crowd is not None:
+            self._crowd.release()
+        self._crowd = CrowdDrawing(self.device, looks) if looks else None
+
     def release(self) -> None:
+        self.meet(())
         self._drop_level()
         super().release()
 
@@ -158,8 +170,7 @@ class Renderer(Owner):
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
-        if self._moving is not None and view.show_stall:
-            self._draw_moving(view, self._moving, targets)
+        if view.show_stall and self._draw_life(view, targets):
             changed = (0, 0, *targets.size)
         if self._character is not None and self._painter is not None:
             self._paint_face(view, self._painter, targets.size)
@@ -185,10 +196,19 @@ class Renderer(Owner):
         canvas.baked, canvas.is_draft = key, draft
         return True
 
-    def _draw_moving(self, view: FrameView, moving: MovingDrawing, targets: FrameTargets) -> None:
+    def _draw_life(self, view: FrameView, targets: FrameTargets) -> bool:
+        """Passers-by and what sways; True if there is any of it."""
+        crowd = self._crowd if view.crowd is not None and self.level.people else None
+        if crowd is None and self._moving is None:
+            return False
         world_to_clip = self._frame.write(view.camera, self._lights, TABLE_LIGHT, targets.size, self.level.line_px)
-        moving.draw(targets.work, view.time_s, world_to_clip, targets.size)
-        moving.draw_halos(targets.work, self._lights.day.lamps)
+        if crowd is not None and view.crowd is not None:
+            eye, day = np.array(view.camera.eye), self._lights.day
+            crowd.draw(view.crowd, targets.work, targets.size, eye, world_to_clip, day, self.level.people)
+        if self._moving is not None:
+            self._moving.draw(targets.work, view.time_s, world_to_clip, targets.size)
+            self._moving.draw_halos(targets.work, self._lights.day.lamps)
+        return True
 
     def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
         tan_half = view.camera.tan_half_height(size[0] / size[1])

@@ -14,6 +14,7 @@ from game.render.camera import HERO, Camera
 from game.render.daylight import DESIGN_SHARE
 
 if TYPE_CHECKING:
+    from game.render.crowd import CrowdView
     from game.render.hud import Hud
 
 __all__ = ["FrameView"]
@@ -27,6 +28,7 @@ class FrameView:
     face: the expression's draw list, or None for the one shown last (the same object again costs nothing).
     show_face False draws a blank face with two guide lines. show_stall False draws the person alone in a studio.
     hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
+    crowd: passers-by behind the stall, as many as the renderer was given looks for.
     day_share: of the afternoon, 0 at 13:00 to 1 at 18:00.
     """
 
@@ -38,4 +40,5 @@ class FrameView:
     hidden_items: frozenset[str] = frozenset()
     time_s: float = 0.0
     day_share: float = DESIGN_SHARE
+    crowd: CrowdView | None = None
     hud: Callable[[Hud], None] | None = None
