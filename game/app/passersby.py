@@ -23,7 +23,7 @@ from game.app.world import TICK_S, World
 from game.core.emotion_space import EMOTIONS
 from game.core.paths import ASSETS
 from game.embos import Planner, PlannerSignal, PlannerState
-from game.render import CrowdLook, CrowdView, dressed, load_crowd_mesh
+from game.render import CrowdLook, CrowdMesh, CrowdView, dressed, load_crowd_mesh
 
 __all__ = ["PEOPLE", "Cast", "Known", "Passersby", "load_cast"]
 
