@@ -7,12 +7,18 @@ import re
 
 from game.core.emotion_space import parse_emotion
 from game.core.errors import BadInput
+from game.core.paths import ASSETS
 
-__all__ = ["add_emotion", "parse_day_share", "parse_size"]
+__all__ = ["add_emotion", "known", "parse_day_share", "parse_size"]
 
 OPENS_MIN, CLOSES_MIN = 13 * 60, 18 * 60  # the market's afternoon, minutes of the day
 
 MAX_SIDE = 8192
+
+
+def known(folder: str) -> list[str]:
+    """Names of the persons (``characters``) or stalls (``stalls``) whose files are there."""
+    return sorted(path.stem for path in (ASSETS / folder).glob("*.yaml"))
 
 
 def parse_size(text: str) -> tuple[int, int]:

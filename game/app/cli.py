@@ -18,6 +18,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "autoplay": ("game.app.autoplay", "play many games without a window, with a policy, into a log"),
     "snapshot": ("game.app.snapshot", "draw one picture without a display"),
     "film": ("game.app.film", "draw a strip or a sequence of pictures without a display"),
+    "turntable": ("game.app.turntable", "draw a person from all sides, or their seven faces"),
     "perform": ("game.app.perform", "let one body live in one feeling: every start with its reason, and shares"),
     "inspect": ("game.app.inspect", "show what is in a BVH, glTF or VRM file"),
     "analyse": ("game.app.analyse", "turn annotated takes into motion units"),

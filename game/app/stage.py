@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import radians, tan
 from pathlib import Path
 
 import numpy as np
@@ -11,20 +12,26 @@ from numpy.typing import NDArray
 
 from game.animation import Pose, Rig, SpringState
 from game.app.rig import load_rig
+from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
-from game.face import DrawList, FaceParams, tessellate
+from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceStyle, read_style, tessellate
 from game.formats import load_yaml
 from game.render import DESIGN_SHARE, HERO, Camera, CharacterModel, CrowdView, FrameView, Hud, StaticMesh
 from game.render.assets import load_character, load_picture, load_stall
 
 __all__ = ["Puppet", "StageAssets", "StageShow", "load_stage"]
 
+_HEAD = REFERENCE.index["head"]
+_STALL_SEEN_M, _FACE_SEEN_M = 1.25, 0.80
+"""Height of what a shot of the stall sees at its target, and of what a close-up does."""
+
 
 @dataclass(frozen=True, eq=False)
 class StageAssets:
     """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8.
 
-    carries: item -> the item that stands on it.
+    carries: item -> the item that stands on it. face: how the person's face is drawn. lift_m: how much higher the
+    person's head is than the reference's.
     """
 
     model: CharacterModel
@@ -32,22 +39,49 @@ class StageAssets:
     stall: StaticMesh
     backdrop: NDArray[np.uint8]
     carries: Mapping[str, str]
+    face: FaceStyle = DEFAULT_STYLE
+    lift_m: float = 0.0
 
     def gone(self, sold: frozenset[str]) -> frozenset[str]:
         """The stall's groups that are no longer there; what still carries something waits for it to go first."""
         return frozenset(f"item:{item}" for item in sold if self.carries.get(item, item) in sold)
 
+    def framed(self, camera: Camera) -> Camera:
+        """The camera as high as the person asks: a shot of the face follows the head, one of the stall stays."""
+        seen_m = 2.0 * camera.distance_m(camera.target) * tan(radians(camera.fov_deg / 2.0))
+        share = min(max((_STALL_SEEN_M - seen_m) / (_STALL_SEEN_M - _FACE_SEEN_M), 0.0), 1.0)
+        if share == 0.0 or self.lift_m == 0.0:
+            return camera
+        (ex, ey, ez), (tx, ty, tz) = camera.eye, camera.target
+        return replace(camera, eye=(ex, ey + share * self.lift_m, ez), target=(tx, ty + share * self.lift_m, tz))
 
-def load_stage(person: str = "mira", stall: str = "flea", folder: Path = ASSETS) -> StageAssets:
-    """Read a person and a stall. Raises BadInput with file and JSON pointer."""
+
+def load_stage(
+    person: str = "mira", stall: str = "flea", folder: Path = ASSETS, models: Path | None = None
+) -> StageAssets:
+    """Read a person and a stall. models: where the person's model lies, if not in ``folder``/characters.
+
+    Raises BadInput with file and JSON pointer, or line and column of the person's YAML.
+    """
     characters, stalls = folder / "characters", folder / "stalls"
+    vrm = (models or characters) / f"{person}.vrm"
+    rig = load_rig(vrm)
+    head = rig.skeleton.rest_model[rig.driven[rig.source == _HEAD], 1, 3]
     return StageAssets(
-        model=load_character(characters / f"{person}.vrm"),
-        rig=load_rig(characters / f"{person}.vrm"),
+        model=load_character(vrm),
+        rig=rig,
+        face=_style(characters / f"{person}.yaml"),
+        lift_m=float(head[0] - REFERENCE.rest_model[_HEAD, 1, 3]) if len(head) else 0.0,
         stall=load_stall(stalls / f"{stall}.glb"),
         backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
         carries=_carries(stalls / f"{stall}.yaml"),
     )
+
+
+def _style(path: Path) -> FaceStyle:
+    """The section ``face`` of a person's YAML; the standard face where there is none."""
+    section = load_yaml(path).get("face") if path.is_file() else None
+    return DEFAULT_STYLE if section is None else read_style(section)
 
 
 def _carries(path: Path) -> dict[str, str]:
@@ -114,11 +148,11 @@ class StageShow:
     ) -> FrameView:
         """The frame as the renderer wants it."""
         if self._face is None or self._params is None or np.abs(params - self._params).max() > 1e-3:
-            self._face, self._params = tessellate(params), params.copy()
+            self._face, self._params = tessellate(params, self.assets.face), params.copy()
         assert self.puppet is not None, "tick comes before frame"
         return FrameView(
             skin_matrices=self.puppet.matrices(share),
-            camera=camera,
+            camera=self.assets.framed(camera),
             face=self._face,
             show_face=show_face,
             hidden_items=hidden_items,

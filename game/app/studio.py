@@ -47,7 +47,7 @@ WARM_UP_S = 1.5
 
 def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     """What ``snapshot`` and ``film`` share."""
-    from game.app.arguments import add_emotion, parse_day_share
+    from game.app.arguments import add_emotion, known, parse_day_share
 
     add_emotion(parser)
     parser.add_argument("--shown", default=None, metavar="NAME=X,…", help="what the face shows, if not what is felt")
@@ -56,6 +56,8 @@ def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--language", choices=["en", "ja"], default="en")
     levels = [level.name for level in LEVELS]
     parser.add_argument("--level", choices=levels, default="ultra", help="quality level (default ultra)")
+    parser.add_argument("--person", choices=known("characters"), default="mira", help="who (default mira)")
+    parser.add_argument("--stall", choices=known("stalls"), default="flea", help="behind which stall (default flea)")
     parser.add_argument("--camera", choices=sorted(CAMERAS), default=None, help="where from")
     parser.add_argument("--time-of-day", type=parse_day_share, default=None, metavar="HH:MM", help="13:00 to 18:00")
     parser.add_argument("--crowd", action=argparse.BooleanOptionalAction, default=True, help="passers-by")
@@ -90,7 +92,7 @@ class Studio:
         self.day_share = DESIGN_SHARE if args.time_of_day is None else float(args.time_of_day)
         self.camera = CAMERAS[args.camera or camera]
         self.device = Device.headless(*size)
-        stage = load_stage()
+        stage = load_stage(args.person, args.stall)
         self.renderer = Renderer(
             self.device,
             stage.model,

@@ -10,7 +10,7 @@ from game.face.parts import Face, NamedExpression, Parts, load_expressions, load
 from game.face.ratings import AxisFit, fit_gaussian, fit_weights
 from game.face.speech import VISEMES, VisemeTrack, viseme_track
 from game.face.state import FaceDecision, FaceSignal, FaceState, advance_face, explain_face, start_face
-from game.face.style import DEFAULT_STYLE, FaceStyle
+from game.face.style import DEFAULT_STYLE, FaceStyle, read_style
 
 __all__ = [
     "DEFAULT_STYLE",
@@ -47,6 +47,7 @@ __all__ = [
     "load_parts",
     "load_weights",
     "log_density",
+    "read_style",
     "start_face",
     "tessellate",
     "viseme_track",

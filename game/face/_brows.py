@@ -19,6 +19,7 @@ _WIDTH = np.interp(np.linspace(0.0, 1.0, _N), [0.0, 0.06, 0.16, 0.4, 1.0], [3.0,
 _MIRROR = np.array([[[1.0, 1.0]], [[-1.0, 1.0]]])
 _SWELL = np.sin(np.linspace(0.0, np.pi, 12))
 _HOOK = bezier(((2.0, -70.0), (6.0, -73.0), (7.0, -77.0), (1.0, -79.0)), 12)[None]
+_NOSE = np.array([0.0, -75.0])
 _WRINKLES = bezier(
     (
         ((-13.0, -50.0), (-6.0, -54.0), (6.0, -54.0), (13.0, -50.0)),
@@ -72,7 +73,8 @@ def furrows(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
 
 def nose(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
     """A tiny hook; a sneer wrinkles its bridge and draws the folds beside the mouth."""
-    ribbons(sheet, _HOOK, 0.7 + 2.6 * _SWELL, 0.95 * ink(style.nose)[None])
+    hook = (_HOOK - _NOSE) * style.nose_scale + _NOSE + (0.0, style.nose_y)
+    ribbons(sheet, hook, (0.7 + 2.6 * _SWELL) * style.nose_scale**0.5, 0.95 * ink(style.nose)[None])
     sneer = float(params[INDEX["sneer"]])
     if sneer > 1e-3:
         colour = ink(style.crease) * (0.8 * sneer)

@@ -126,7 +126,8 @@ def lids(params: FaceParams) -> Lids:
 @lru_cache(maxsize=16)
 def _frame(style: FaceStyle) -> tuple[Floats, Floats]:
     """Scale and offset (2, 1, 2) from local to head mm."""
-    return _MIRROR * style.eye_scale, np.array([[[style.eye_x, style.eye_y]], [[-style.eye_x, style.eye_y]]])
+    tall = _MIRROR * style.eye_scale * (1.0, style.eye_height)
+    return tall, np.array([[[style.eye_x, style.eye_y]], [[-style.eye_x, style.eye_y]]])
 
 
 def _place(local: Floats, style: FaceStyle) -> Floats:
@@ -255,7 +256,7 @@ def lashes(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> Non
     upper = _rows(lid.x, lid.upper + 2.2 + 25.0 * squeeze * _U)
     lower = _rows(lid.x, lid.lower - 1.0 - 23.0 * squeeze * _U)
     width = _OPEN_WIDTH + shut * (_SHUT_WIDTH - _OPEN_WIDTH)
-    width = (width + squeeze * (_SQUEEZED_WIDTH - width)) * thick
+    width = (width + squeeze * (_SQUEEZED_WIDTH - width)) * (thick * style.lash_weight)
     lower_width = _LOWER_WIDTH * (1.0 - 0.5 * shut)
     lower_width = (lower_width + squeeze * (_SQUEEZED_WIDTH - lower_width)) * thick
     squeezed = bool(squeeze.max() > 1e-3)
@@ -263,7 +264,9 @@ def lashes(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> Non
     ribbons(sheet, _place(crease, style), _CREASE_WIDTH, ink(style.crease) * (0.85 * lid.ajar)[:, None])
     ribbons(sheet, _place(lower, style), lower_width, soft + (dark - soft) * squeeze, over=squeezed)
     ribbons(sheet, _place(upper, style), width, np.stack([dark, dark]), over=True)
+    if style.lash_wing == 0.0:
+        return
     gone = np.minimum(squeeze * 2.0, 1.0)
-    wings = (upper[:, None, -1:] + _WINGS).reshape(2, -1, 2)
+    wings = (upper[:, None, -1:] + _WINGS * style.lash_wing).reshape(2, -1, 2)
     colour = np.repeat(dark * (1.0 - gone), 2, axis=0)
     ribbons(sheet, _place(wings, style).reshape(4, 12, 2), np.tile(_WINGS_WIDTH, (2, 1)) * thick, colour, over=True)

@@ -69,7 +69,7 @@ def _cheeks(x: float, y: float, rx: float, ry: float) -> tuple[Oval, Oval]:
     return (x, y, rx, ry), (-x, y, rx, ry)
 
 
-def complexion(sheet: Sheet, params: FaceParams) -> None:
+def complexion(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
     """Everything that tints the skin, below all drawn features."""
     pale, gloom, sick, red, blush = (float(params[INDEX[n]]) for n in ("pale", "gloom", "sick", "red", "blush"))
     _veil(sheet, pale, "#E9ECF6", (138.0, 0.5), (40.0, 0.5), (-60.0, 0.42), (-190.0, 0.3))
@@ -81,6 +81,8 @@ def complexion(sheet: Sheet, params: FaceParams) -> None:
     _ovals(sheet, ((0.0, -60.0, 165.0, 92.0),), "#F0412E", 0.46 * red)
     _ovals(sheet, _cheeks(84.0, -74.0, 60.0, 42.0), "#E8321F", 0.52 * red)
     _veil(sheet, red, "#E84A38", (138.0, 0.55), (70.0, 0.42), (10.0, 0.18), (-40.0, 0.0))
+    _ovals(sheet, _cheeks(86.0, -82.0, 50.0, 34.0), "#F26A4B", 0.60 * style.ruddy)
+    _ovals(sheet, ((0.0, -74.0 + style.nose_y, 27.0, 19.0),), "#F0603F", 0.62 * style.ruddy)
     _ovals(sheet, _cheeks(90.0, -80.0, 43.0, 27.0), "#FF6257", 0.66 * min(blush, 1.0))
     _ovals(sheet, ((0.0, -74.0, 120.0, 30.0),), "#FF6257", 0.75 * (blush - 1.0))  # a deep blush crosses the nose
 

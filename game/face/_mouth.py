@@ -57,6 +57,7 @@ def lips(params: FaceParams, style: FaceStyle) -> Lips:
             "width", "corner", "open", "top", "square", "peak", "cat", "wave", "asym", "skew", "pout", "y",
         )
     )  # fmt: skip
+    width, opening = width * style.mouth_scale, opening * style.mouth_scale
     ajar = opening / (opening + 5.0)
     line = corner * _SMILE + asym * _LEAN + wave * _WAVE - cat * _CAT + pout * _PUCKER
     tent = peak * _TENT

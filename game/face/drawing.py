@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from game.core.errors import BadInput
+from game.face._age import age_lines
 from game.face._brows import brows, furrows, nose
 from game.face._eyes import eyeballs, lashes, lids
 from game.face._marks import complexion, drops, signs
 from game.face._mouth import lips, mouth
 from game.face.mesh import DrawList, Sheet
-from game.face.params import FIELDS, FaceParams, clamp
+from game.face.params import FIELDS, INDEX, FaceParams, clamp
 from game.face.style import DEFAULT_STYLE, FaceStyle
 
 __all__ = ["tessellate"]
@@ -25,10 +26,15 @@ def tessellate(params: FaceParams, style: FaceStyle = DEFAULT_STYLE) -> DrawList
     values = np.asarray(params, dtype=np.float64)
     if values.shape != (len(FIELDS),) or not np.isfinite(values).all():
         raise BadInput("expression", expected=f"{len(FIELDS)} finite numbers", seen=f"shape {values.shape}")
+    if style.rest:
+        values = values.copy()
+        for name, change in style.rest:
+            values[INDEX[name]] += change
     values = clamp(values)
     lid = lids(values)
     sheet = Sheet()
-    complexion(sheet, values)
+    complexion(sheet, values, style)
+    age_lines(sheet, values, style)
     nose(sheet, values, style)
     furrows(sheet, values, style)
     eyeballs(sheet, values, lid, style)

@@ -59,14 +59,16 @@ def _head(spec: HeadSpec, centre: Floats, jaw: Field) -> Field:
     cheeks = mirrored(sphere(centre + spec.cheek_at, spec.cheek))
     mass = union(0.075, union(0.07, skull, jaw, cheeks), sphere(centre + spec.chin_at, spec.chin))
     # One large ellipsoid planes off the brow, shallow hollows seat the eyes: the head of a figure, not a ball.
-    mass = intersection(0.06, mass, ellipsoid(at(0, 0, -0.16), (0.30, 0.42, 0.318)))
+    mass = intersection(0.06, mass, ellipsoid(at(0, 0, -0.16), spec.brow_plane))
     mass = subtraction(0.05, mass, mirrored(ellipsoid(at(0.074, -0.030, 0.205), spec.eye_hollow)))
     nose_top = at(0, -0.060, 0.140)
-    mass = union(0.022, mass, cone(nose_top, nose_top + (0, -0.014, spec.nose_length), 0.009, 0.0075))
+    mass = union(
+        0.022, mass, cone(nose_top, nose_top + (0, -spec.nose_drop, spec.nose_length), 0.009, spec.nose_radius)
+    )
     ear = subtraction(
         0.012,
-        ellipsoid(at(0.170, -0.030, -0.014), spec.ear),
-        ellipsoid(at(0.186, -0.026, -0.002), np.asarray(spec.ear) * (0.67, 0.6, 0.5)),
+        ellipsoid(at(spec.ear_x, -0.030, -0.014), spec.ear),
+        ellipsoid(at(spec.ear_x + 0.016, -0.026, -0.002), np.asarray(spec.ear) * (0.67, 0.6, 0.5)),
     )
     neck = cone((0, 0.915, -0.012), (0, 1.10, -0.010), spec.neck_base_radius, spec.neck_radius)
     return union(0.03, union(0.014, mass, mirrored(ear)), neck)
@@ -79,6 +81,8 @@ def _trunk(spec: BodySpec) -> Field:
         ellipsoid((0, 0.68, 0), spec.waist),
         ellipsoid((0, 0.55, 0), spec.pelvis),
     )
+    if spec.belly[0] > 0.0:
+        mass = union(0.05, mass, ellipsoid(spec.belly_at, spec.belly))
     shoulder = joint_at("leftUpperArm") * (0.69, 1, 1)
     yoke = capsule(shoulder * (-1, 1, 1), shoulder, spec.shoulder_radius)
     return union(0.03, union(0.055, mass, yoke), cone((0, 0.92, -0.01), (0, 0.985, -0.01), 0.064, 0.052))

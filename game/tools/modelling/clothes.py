@@ -25,13 +25,15 @@ from game.tools.modelling.fields import (
     union,
     unit,
 )
-from game.tools.modelling.lofts import loft, smooth_curve
+from game.tools.modelling.lofts import loft
 from game.tools.modelling.mesh import Mesh, split_at_level
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
-from game.tools.modelling.spec import ClothesSpec, SpringSpec
+from game.tools.modelling.spec import SpringSpec
+from game.tools.modelling.spec_wear import CoatSpec
 from game.tools.modelling.surface import Sculpt
-from game.tools.modelling.weights import Binder
+from game.tools.modelling.trims import lapel_line
+from game.tools.modelling.weights import Binder, SleeveFit
 
 __all__ = ["Clothes"]
 
@@ -46,7 +48,7 @@ Weigh = Callable[[Floats], Floats]
 class Clothes:
     """Fields of the upper clothes; ``parts`` takes meshes from them."""
 
-    def __init__(self, spec: ClothesSpec, anatomy: Anatomy, tail_spring: SpringSpec) -> None:
+    def __init__(self, spec: CoatSpec, anatomy: Anatomy, tail_spring: SpringSpec) -> None:
         self.spec = spec
         self.anatomy = anatomy
         s = spec
@@ -59,7 +61,8 @@ class Clothes:
         self._scarf = Sculpt(self._scarf_field, (-0.12, 0.84, -0.12), (0.12, 1.04, 0.15), 0.0035)
         self._sleeve = Sculpt(self._sleeve_field, (0.05, 0.50, -0.10), (0.46, 1.02, 0.10), 0.0045, 5e-3)
         self._cuff = Sculpt(self._cuff_field, (0.18, 0.55, -0.10), (0.46, 0.85, 0.10), 0.004)
-        self._lapel_path, self._lapel_out = self._lapel_line()
+        self._lapel_path, self._lapel_out = lapel_line(self._coat_closed, _OPENING_Y, _OPENING_HALF_WIDTH, s.coat_hem)
+        self.sleeve_fit = SleeveFit()
         self.tails = (
             self._tail("scarf_right", (-0.026, 0.872, 0.110), tail_spring),
             self._tail("scarf_left", (0.048, 0.880, 0.106), tail_spring),
@@ -190,32 +193,6 @@ class Clothes:
             slope = gradient(self.anatomy.trunk, p)
             p[:, 2] -= (self.anatomy.trunk(p) - stand_off) / np.maximum(slope[:, 2], 0.3)
         return p, normals(self.anatomy.trunk, p)
-
-    def _lapel_line(self) -> tuple[Floats, Floats]:
-        """Centre line of the lapels around the opening and behind the neck, and the outward direction along it."""
-        y = np.linspace(self.spec.coat_hem + 0.005, 0.925, 30)
-        right = np.stack([np.interp(y, _OPENING_Y, _OPENING_HALF_WIDTH) + 0.006, y, np.full(30, 0.10)], 1)
-        neck = np.array(
-            [
-                (0.058, 0.952, 0.050),
-                (0.066, 0.970, 0.012),
-                (0.065, 0.981, -0.030),
-                (0.043, 0.988, -0.064),
-                (0, 0.991, -0.077),
-            ]
-        )
-        half = np.vstack([right, neck])
-        line = smooth_curve(np.vstack([half, half[::-1][1:] * (-1, 1, 1)]), 150)
-        on_coat = line[:, 1] < 0.945
-        for _ in range(25):
-            slope = gradient(self._coat_closed, line)
-            step = slope * (self._coat_closed(line) / np.maximum((slope**2).sum(1), 0.2))[:, None]
-            line[on_coat] -= step[on_coat]
-            line[1:-1] = 0.5 * line[1:-1] + 0.25 * (line[:-2] + line[2:])
-        out = normals(self._coat_closed, line)
-        for _ in range(12):
-            out[1:-1] = 0.5 * out[1:-1] + 0.25 * (out[:-2] + out[2:])
-        return line, unit(out)
 
     # --- parts -------------------------------------------------------------------------------------------------
     def parts(self, binder: Binder, detail: Detail) -> list[Part]:

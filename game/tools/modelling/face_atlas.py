@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from game.face import face_params, tessellate
+from game.face import FaceStyle, face_params, tessellate
 from game.tools.modelling.fields import Floats
 from game.tools.modelling.gltf import srgb
 
@@ -90,13 +90,13 @@ def _painted(canvas: Floats, position: Floats, colour: Floats, triangle: NDArray
         block[inside] = block[inside] * (1 - rgba[:, 3:]) + rgba[:, :3]
 
 
-def paint_atlas(skin: str) -> bytes:
-    """PNG of all expressions on the skin's lit colour "#rrggbb"."""
+def paint_atlas(skin: str, style: FaceStyle) -> bytes:
+    """PNG of all expressions in a face's style on the skin's lit colour "#rrggbb"."""
     atlas = Image.new("RGB", (COLUMNS * _CELL_PX, ROWS * _CELL_PX), skin)
     for number, changes in enumerate(EXPRESSIONS.values()):
         size = _CELL_PX * _OVERSAMPLE
         canvas = np.tile(np.array(srgb(skin)), (size, size, 1))
-        drawing = tessellate(face_params(**changes))
+        drawing = tessellate(face_params(**changes), style)
         for layer in (drawing.under, drawing.over):
             _painted(canvas, layer.position.astype(np.float64), layer.colour.astype(np.float64), layer.triangle)
         pixels = Image.fromarray((np.clip(canvas, 0, 1) * 255).round().astype(np.uint8))

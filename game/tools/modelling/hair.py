@@ -6,28 +6,27 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from game.tools.modelling.curls import curl_meshes
 from game.tools.modelling.fields import Field, Floats, ellipsoid, smooth_max, smooth_min, smoothstep, unit
 from game.tools.modelling.lofts import bezier, loft
 from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
-from game.tools.modelling.spec import ClumpSpec, HairSpec, SpringSpec, TuftSpec
+from game.tools.modelling.spec import SpringSpec
+from game.tools.modelling.spec_hair import ClumpSpec, HairSpec, TuftSpec
 from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Hair"]
 
-_HAIRLINE_DEG = (0, 40, 70, 88, 105, 130, 180)
-_HAIRLINE_M = (0.110, 0.075, 0.020, -0.035, -0.092, -0.128, -0.142)
-"""Lower edge of the cap under the clumps: height over the hair's centre by azimuth."""
-
 
 class Hair:
     """All hair of one head. centre: (3,) of the scalp ellipsoid in model space."""
 
-    def __init__(self, spec: HairSpec, springs: Mapping[str, SpringSpec], head_centre: Floats) -> None:
+    def __init__(self, spec: HairSpec, springs: Mapping[str, SpringSpec], head_centre: Floats, skin: Field) -> None:
         self.spec = spec
         self.head_centre = head_centre
+        self._skin = skin
         self.centre = head_centre + np.asarray(spec.centre)
         self.radii = np.asarray(spec.radii)
         reach = 0.24
@@ -52,18 +51,31 @@ class Hair:
         on_skull = np.stack([level[:, 0], height, level[:, 2]], 1) * self.radii
         return on_skull + outward * lift_m[:, None] + self.centre, outward
 
+    def on_skin(self, azimuth_deg: Floats, polar_deg: Floats, lift_m: Floats) -> tuple[Floats, Floats]:
+        """Points (n, 3) on the head's skin in a direction from its centre, and these directions."""
+        azimuth, polar = np.radians(azimuth_deg), np.radians(polar_deg)
+        out = np.stack([np.sin(azimuth) * np.sin(polar), np.cos(polar), np.cos(azimuth) * np.sin(polar)], 1)
+        near, far = np.zeros(len(out)), np.full(len(out), 0.30)
+        for _ in range(24):
+            middle = (near + far) / 2
+            inside = self._skin(self.head_centre + out * middle[:, None]) < 0
+            near, far = np.where(inside, middle, near), np.where(inside, far, middle)
+        return self.head_centre + out * (near + lift_m)[:, None], out
+
     def _cap_field(self) -> Field:
-        scalp = ellipsoid(self.centre, self.radii + 0.002)
+        spec = self.spec
+        scalp = ellipsoid(self.centre, self.radii + spec.cap_lift)
+        hairline_deg, hairline_m = np.array(spec.hairline).T
 
         def field(p: Floats) -> Floats:
             q = p - self.centre
             azimuth = np.abs(np.degrees(np.arctan2(q[:, 0], q[:, 2])))
-            hairline = np.interp(azimuth, _HAIRLINE_DEG, _HAIRLINE_M)
+            hairline = np.interp(azimuth, hairline_deg, hairline_m)
             # The nape: a cylinder behind the ears, so that no gap opens between the back clumps.
-            nape = smooth_max(np.hypot(q[:, 0], q[:, 2]) - 0.160, np.abs(q[:, 1] + 0.07) - 0.085, 0.03)
+            nape = smooth_max(np.hypot(q[:, 0], q[:, 2]) - spec.nape, np.abs(q[:, 1] + 0.07) - 0.085, 0.03)
             nape = smooth_max(nape, q[:, 2] + 0.02, 0.03)
             # On the crown the cap rises between the clumps, so that their partings are grooves and not gaps.
-            crown = 0.018 * smoothstep(0.06, 0.13, q[:, 1])
+            crown = spec.crown * smoothstep(0.06, 0.13, q[:, 1])
             return smooth_max(smooth_min(scalp(p) - crown, nape, 0.04), (hairline - q[:, 1]) * 0.8, 0.012)
 
         return field
@@ -78,6 +90,8 @@ class Hair:
         swell = 0.55 + 0.45 * np.sin(np.minimum(t / spec.widest, 1.0) * np.pi / 2)
         fall = np.maximum(1.0 - (np.maximum(t - spec.widest, 0.0) / (1.0 - spec.widest)) ** 1.7, 0.0) ** 0.713
         profile = np.maximum(np.where(t < spec.widest, swell, fall), 0.004)
+        if spec.taper > 0.0:
+            profile = profile * np.interp(t, [0.0, 0.3], [1.0 - spec.taper, 1.0])
         return loft(path, outward, spec.width * profile, spec.thickness * profile**0.8, detail.sides(9, 5))
 
     def all_clumps(self, detail: Detail) -> list[tuple[ClumpSpec, Mesh]]:
@@ -116,6 +130,14 @@ class Hair:
         for number, (spec, mesh) in enumerate(self.all_clumps(detail)):
             weights = binder.hair(mesh.position, self.chains)
             parts.append(Part(f"hair_{spec.layer}_{number}", "hair", mesh, weights, 0.8))
+        for number, mesh in enumerate(curl_meshes(self.spec.curls, self.on_scalp, detail)):
+            parts.append(Part(f"hair_curl_{number}", "hair", mesh, binder.hair(mesh.position, self.chains), 0.8))
+        for number, mesh in enumerate(curl_meshes(self.spec.beard, self.on_skin, detail)):
+            parts.append(Part(f"beard_{number}", "hair", mesh, binder.rigid(mesh.position, "head"), 0.7))
+        for whisker in self.spec.whiskers:
+            mesh = self._tuft(whisker, detail)
+            weights = binder.rigid(mesh.position, "head")
+            parts.append(Part(f"whisker_{whisker.name}", "hair", mesh, weights, 0.7))
         for tuft, chain in zip(self.spec.tufts, self.tuft_chains, strict=True):
             mesh = self._tuft(tuft, detail)
             parts.append(Part(f"hair_tuft_{tuft.name}", "hair", mesh, binder.along_chain(mesh.position, chain), 0.8))

@@ -10,7 +10,8 @@ from game.tools.modelling.lofts import loft
 from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
 from game.tools.modelling.rig import Chain
-from game.tools.modelling.spec import BandSpec, SpringSpec
+from game.tools.modelling.spec import SpringSpec
+from game.tools.modelling.spec_wear import BandSpec
 from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 

@@ -15,7 +15,7 @@ import numpy as np
 from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE
 from game.tools.modelling.fields import Floats
 
-__all__ = ["ARM_DROP_RAD", "Arm", "Chain", "Rig", "head_centre", "left_arm"]
+__all__ = ["ARM_DROP_RAD", "Arm", "Chain", "Rig", "a_pose", "head_centre", "left_arm"]
 
 ARM_DROP_RAD = np.pi / 4
 """How far the modelled arms hang below the T-pose."""
@@ -156,7 +156,7 @@ class Rig:
                 position.append(point)
                 parent = len(names) - 1
         where: Floats = np.array(position, dtype=np.float64)
-        return Rig(tuple(names), tuple(parents), where, _a_pose(names, parents, where), tuple(chains), _indexed(names))
+        return Rig(tuple(names), tuple(parents), where, a_pose(names, parents, where), tuple(chains), _indexed(names))
 
     def mirrored_columns(self) -> Floats:
         """(J,) column order that swaps left and right joints (chains stay)."""
@@ -174,7 +174,7 @@ def _indexed(names: Sequence[str]) -> dict[str, int]:
     return {name: i for i, name in enumerate(names)}
 
 
-def _a_pose(names: Sequence[str], parents: Sequence[int], position: Floats) -> Floats:
+def a_pose(names: Sequence[str], parents: Sequence[int], position: Floats) -> Floats:
     """(J, 4, 4) joint matrices with both arm chains turned down about the UpperArm joints."""
     bind = np.tile(np.eye(4), (len(names), 1, 1))
     bind[:, :3, 3] = position

@@ -1,23 +1,27 @@
 """A character's authored numbers: dataclasses filled strictly from a YAML file, one record per section.
 
 Every value a designer can change stands in ``assets/characters/<id>.yaml``; unknown keys and wrong types are refused
-with their place in the file. Lengths are metres, angles in the tables degrees (keys that end in ``_deg``).
+with their place in the file. Lengths are metres, angles in the tables degrees (keys that end in ``_deg``). The body
+is modelled at the reference humanoid's size; ``proportions`` then stretches it to the person's own.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar, get_type_hints
+from typing import TypeVar
 
+from game.face import DEFAULT_STYLE, FaceStyle, read_style
 from game.formats import Node, load_yaml
+from game.tools.modelling.proportions import Proportions
+from game.tools.modelling.records import Vector, record
+from game.tools.modelling.spec_hair import CurlSpec, HairSpec, TuftSpec, read_hair
+from game.tools.modelling.spec_wear import CLOTHES, BandSpec, CapSpec, ClothesSpec, LegSpec, SpectaclesSpec
 
 __all__ = [
-    "BandSpec",
     "BodySpec",
     "CharacterSpec",
-    "ClothesSpec",
-    "ClumpSpec",
+    "CurlSpec",
     "HairSpec",
     "HandSpec",
     "HeadSpec",
@@ -28,8 +32,11 @@ __all__ = [
     "read_palette",
 ]
 
-Vector = tuple[float, float, float]
-Record = TypeVar("Record")
+Part = TypeVar("Part")
+_SECTIONS = (
+    *("id", "name", "authors", "palette", "face", "proportions", "head", "body", "hand", "clothes", "legs", "hair"),
+    *("band", "cap", "spectacles", "springs"),
+)
 
 
 @dataclass(frozen=True)
@@ -58,11 +65,16 @@ class HeadSpec:
     ear: Vector
     neck_radius: float
     neck_base_radius: float
+    nose_radius: float = 0.0075
+    nose_drop: float = 0.014
+    ear_x: float = 0.170
+    brow_plane: Vector = (0.30, 0.42, 0.318)
+    """Radii of the large ellipsoid 16 cm behind the centre that planes off brow and cheeks."""
 
 
 @dataclass(frozen=True)
 class BodySpec:
-    """Radii of the trunk's three masses and of the limbs, metres."""
+    """Radii of the trunk's masses and of the limbs, metres. belly: none where its first radius is 0."""
 
     chest: Vector
     waist: Vector
@@ -73,6 +85,8 @@ class BodySpec:
     knee: float
     ankle: float
     calf: float
+    belly: Vector = (0.0, 0.0, 0.0)
+    belly_at: Vector = (0.0, 0.68, 0.0)
 
 
 @dataclass(frozen=True)
@@ -82,77 +96,6 @@ class HandSpec:
     fingers: tuple[float, float, float, float]
     thumb: float
     palm_half: Vector
-
-
-@dataclass(frozen=True)
-class ClothesSpec:
-    """Lengths in metres: along the arm from the shoulder, or heights above the ground."""
-
-    sleeve_end: float
-    sleeve_radius: Vector
-    sleeve_stripe: float
-    coat_hem: float
-    coat_flare: float
-    apron_top: float
-    apron_hem: float
-    cuff_from: float
-    cuff_to: float
-    trouser_hem: float
-    trouser_radius: float
-    sock_top: float
-    crest_radius: float
-
-
-@dataclass(frozen=True)
-class ClumpSpec:
-    """One lock of hair on the skull: from azimuth/polar angle to azimuth/polar angle.
-
-    layer: fringe | accent | side | back | under | crown. Beyond a polar angle of 90 degrees it hangs down. lift is
-    the height above the scalp, bow the extra height at half length, tip the outward flick of the end.
-    """
-
-    layer: str
-    azimuth_deg: tuple[float, float]
-    polar_deg: tuple[float, float]
-    width: float
-    thickness: float
-    lift: float
-    bow: float
-    tip: float
-    curl_deg: float
-    ease: float
-    widest: float
-
-
-@dataclass(frozen=True)
-class TuftSpec:
-    """A stray hair: four Bezier points from the head's centre, metres."""
-
-    name: str
-    points: tuple[Vector, Vector, Vector, Vector]
-    width: float
-    thickness: float
-    outward: Vector
-
-
-@dataclass(frozen=True)
-class HairSpec:
-    radii: Vector
-    centre: Vector
-    clumps: tuple[ClumpSpec, ...]
-    tufts: tuple[TuftSpec, ...]
-    chains: tuple[tuple[str, float], ...]
-
-
-@dataclass(frozen=True)
-class BandSpec:
-    """The headband and its bow. polar_deg: mean height and how much it dips in front."""
-
-    polar_deg: tuple[float, float]
-    width: float
-    thickness: float
-    knot_deg: tuple[float, float]
-    bow_scale: float
 
 
 @dataclass(frozen=True)
@@ -167,52 +110,33 @@ class SpringSpec:
 
 @dataclass(frozen=True)
 class CharacterSpec:
+    """One person. clothes: the record of its kind (coat, haori, dungarees)."""
+
     id: str
     name: str
     authors: tuple[str, ...]
     palette: dict[str, Swatch]
+    face: FaceStyle
+    proportions: Proportions
     head: HeadSpec
     body: BodySpec
     hand: HandSpec
     clothes: ClothesSpec
+    legs: LegSpec
     hair: HairSpec
-    band: BandSpec
-    springs: dict[str, SpringSpec]
-
-
-def _numbers(node: Node, count: int) -> tuple[float, ...]:
-    items = node.as_list()
-    if len(items) != count:
-        raise node.error(expected=f"{count} numbers")
-    return tuple(item.as_float(-1000.0, 1000.0) for item in items)
-
-
-def _value(node: Node, kind: Any) -> Any:
-    if kind is float:
-        return node.as_float(-1000.0, 1000.0)
-    if kind is str:
-        return node.as_str()
-    arguments = kind.__args__
-    if arguments[0] is float:
-        return _numbers(node, len(arguments))
-    return tuple(_numbers(item, 3) for item in node.as_list())
-
-
-def _record(node: Node, kind: type[Record]) -> Record:
-    """A dataclass from a mapping with exactly its fields."""
-    hints = get_type_hints(kind)
-    names = [f.name for f in fields(kind)]  # type: ignore[arg-type]  # every Record here is a dataclass
-    node.only(*names)
-    return kind(**{name: _value(node[name], hints[name]) for name in names})
+    band: BandSpec | None
+    cap: CapSpec | None
+    spectacles: SpectaclesSpec | None
+    springs: dict[str, SpringSpec] = field(repr=False)
 
 
 def read_palette(node: Node) -> dict[str, Swatch]:
     """``name: [class, lit, shade, deep]`` -> swatches by name."""
     palette = {}
-    for key, value in node.items():
-        items = value.as_list()
+    for key, row in node.items():
+        items = row.as_list()
         if len(items) != 4:
-            raise value.error(expected="[class, lit, shade, deep]")
+            raise row.error(expected="[class, lit, shade, deep]")
         kind, *colours = (item.as_str() for item in items)
         if kind not in ("skin", "face", "hair", "cloth", "gloss", "flat"):
             raise items[0].error(expected="skin | face | hair | cloth | gloss | flat")
@@ -227,31 +151,57 @@ def read_palette(node: Node) -> dict[str, Swatch]:
     return palette
 
 
-def _hair(node: Node) -> HairSpec:
-    node.only("radii", "centre", "clumps", "tufts", "chains")
-    return HairSpec(
-        radii=_value(node["radii"], Vector),
-        centre=_value(node["centre"], Vector),
-        clumps=tuple(_record(row, ClumpSpec) for row in node["clumps"]),
-        tufts=tuple(_record(row, TuftSpec) for row in node["tufts"]),
-        chains=tuple((key.as_str(), value.as_float(-180, 180)) for key, value in node["chains"].items()),
-    )
+def _clothes(node: Node) -> ClothesSpec:
+    kind = node["kind"].as_str()
+    if kind not in CLOTHES:
+        raise node["kind"].error(expected=" | ".join(CLOTHES))
+    return record(node, CLOTHES[kind])
+
+
+def _optional(node: Node, key: str, kind: type[Part]) -> Part | None:
+    part = node.get(key)
+    return None if part is None else record(part, kind)
+
+
+def _swings(spec_hair: HairSpec, clothes: ClothesSpec, band: BandSpec | None) -> set[str]:
+    """The kinds of chain the person has, each of which needs its dynamics."""
+    kinds = set(clothes.swings)
+    kinds |= {"hair"} if spec_hair.chains else set()
+    kinds |= {"tuft"} if spec_hair.tufts else set()
+    return kinds | ({"bow"} if band else set())
 
 
 def load_character(path: Path) -> CharacterSpec:
     """Read ``assets/characters/<id>.yaml``. Raises BadInput with file:line:col."""
     node = load_yaml(path)
-    node.only("id", "name", "authors", "palette", "head", "body", "hand", "clothes", "hair", "band", "springs")
+    node.only(*_SECTIONS)
+    hair, clothes, band = read_hair(node["hair"]), _clothes(node["clothes"]), _optional(node, "band", BandSpec)
+    springs = node["springs"].only(*sorted(_swings(hair, clothes, band)))
+    legs = record(node["legs"], LegSpec)
+    palette = read_palette(node["palette"])
+    needed = {"skin", "face", "hair", *clothes.materials, *legs.materials}
+    needed |= {"red"} if band else set()
+    needed |= {"cap", "cap_band"} if "cap" in node else set()
+    needed |= {"rims"} if "spectacles" in node else set()
+    for name in sorted(needed - set(palette)):
+        raise node["palette"].error(f"no colours for the material {name!r}", expected=", ".join(sorted(needed)))
+    style = node.get("face")
+    proportions = _optional(node, "proportions", Proportions)
     return CharacterSpec(
         id=node["id"].as_str(),
         name=node["name"].as_str(),
         authors=tuple(item.as_str() for item in node["authors"]),
-        palette=read_palette(node["palette"]),
-        head=_record(node["head"], HeadSpec),
-        body=_record(node["body"], BodySpec),
-        hand=_record(node["hand"], HandSpec),
-        clothes=_record(node["clothes"], ClothesSpec),
-        hair=_hair(node["hair"]),
-        band=_record(node["band"], BandSpec),
-        springs={key.as_str(): _record(value, SpringSpec) for key, value in node["springs"].items()},
+        palette=palette,
+        face=DEFAULT_STYLE if style is None else read_style(style),
+        proportions=proportions or Proportions(),
+        head=record(node["head"], HeadSpec),
+        body=record(node["body"], BodySpec),
+        hand=record(node["hand"], HandSpec),
+        clothes=clothes,
+        legs=legs,
+        hair=hair,
+        band=band,
+        cap=_optional(node, "cap", CapSpec),
+        spectacles=_optional(node, "spectacles", SpectaclesSpec),
+        springs={name: record(springs[name], SpringSpec) for name in sorted(_swings(hair, clothes, band))},
     )

@@ -9,6 +9,7 @@ import numpy as np
 from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE
 from game.tools.modelling.face_atlas import COLUMNS, EXPRESSIONS, ROWS, cell_of, paint_atlas
 from game.tools.modelling.gltf import Gltf, linear_rgb
+from game.tools.modelling.proportions import Figure
 from game.tools.modelling.rig import Rig
 from game.tools.modelling.spec import CharacterSpec
 
@@ -50,12 +51,13 @@ def add_skeleton(gltf: Gltf, rig: Rig) -> int:
     return 0
 
 
-def add_face_pictures(gltf: Gltf, material: dict[str, Any], skin: str) -> None:
+def add_face_pictures(gltf: Gltf, material: dict[str, Any], spec: CharacterSpec) -> None:
     """Give the face's material the atlas of expressions, at the neutral cell, on the lit and on the shaded side.
 
     The game ignores it and draws the vector face; other programs have no other face to show.
     """
-    texture = gltf.picture(paint_atlas(skin), "expressions")
+    skin = material["extras"]["lit_srgb"]
+    texture = gltf.picture(paint_atlas(skin, spec.face), "expressions")
     transform = {"offset": list(cell_of("neutral")), "scale": [1 / COLUMNS, 1 / ROWS]}
     use = {"index": texture, "extensions": {"KHR_texture_transform": transform}}
     material["pbrMetallicRoughness"]["baseColorTexture"] = use
@@ -81,7 +83,7 @@ def _expression(name: str, face_material: int) -> dict[str, Any]:
     }
 
 
-def humanoid_extension(spec: CharacterSpec, rig: Rig, face_material: int) -> dict[str, Any]:
+def humanoid_extension(spec: CharacterSpec, figure: Figure, face_material: int) -> dict[str, Any]:
     """VRMC_vrm: meta, humanoid bones, expressions, look-at. face_material: index of the face's material."""
     look_range = {"inputMaxValue": 90.0, "outputScale": 1.0}
     return {
@@ -101,10 +103,10 @@ def humanoid_extension(spec: CharacterSpec, rig: Rig, face_material: int) -> dic
             "allowRedistribution": True,
             "modification": "allowModificationRedistribution",
         },
-        "humanoid": {"humanBones": {name: {"node": rig.index[name]} for name in REFERENCE.names}},
+        "humanoid": {"humanBones": {name: {"node": figure.rig.index[name]} for name in REFERENCE.names}},
         "firstPerson": {},
         "lookAt": {
-            "offsetFromHeadBone": _numbers(HEAD_CENTRE_OFFSET + (0.0, -0.036, 0.10)),
+            "offsetFromHeadBone": _numbers((HEAD_CENTRE_OFFSET + (0.0, -0.036, 0.10)) * figure.size_at("head")),
             "type": "expression",
             "rangeMapHorizontalInner": look_range,
             "rangeMapHorizontalOuter": look_range,
@@ -115,8 +117,9 @@ def humanoid_extension(spec: CharacterSpec, rig: Rig, face_material: int) -> dic
     }
 
 
-def spring_extension(gltf: Gltf, rig: Rig) -> dict[str, Any]:
+def spring_extension(gltf: Gltf, figure: Figure) -> dict[str, Any]:
     """VRMC_springBone: one collider group per body part, one spring per chain."""
+    rig = figure.rig
     where = {node.get("name"): i for i, node in enumerate(gltf.nodes)}
     springs = []
     group_of = {joint: k for k, (joint, _, _) in enumerate(_COLLIDERS)}
@@ -138,13 +141,16 @@ def spring_extension(gltf: Gltf, rig: Rig) -> dict[str, Any]:
         springs.append(spring)
     return {
         "specVersion": "1.0",
-        "colliders": [
-            {"node": rig.index[joint], "shape": {"sphere": {"offset": _numbers(np.asarray(at)), "radius": radius}}}
-            for joint, at, radius in _COLLIDERS
-        ],
+        "colliders": [_collider(figure, joint, at, radius) for joint, at, radius in _COLLIDERS],
         "colliderGroups": [{"name": joint, "colliders": [k]} for k, (joint, _, _) in enumerate(_COLLIDERS)],
         "springs": springs,
     }
+
+
+def _collider(figure: Figure, joint: str, at: tuple[float, ...], radius: float) -> dict[str, Any]:
+    size = figure.size_at(joint)
+    sphere = {"offset": _numbers(np.asarray(at) * size), "radius": round(float(radius * size.mean()), 6)}
+    return {"node": figure.rig.index[joint], "shape": {"sphere": sphere}}
 
 
 def _numbers(values: Any) -> list[float]:

@@ -7,6 +7,7 @@ kind of part lists the joints that may move it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from game.tools.modelling.anatomy import Anatomy, joint_at
 from game.tools.modelling.fields import Field, Floats, capsule, cone, smoothstep, sphere, union
 from game.tools.modelling.rig import Chain, Rig
 
-__all__ = ["Binder"]
+__all__ = ["Binder", "SleeveFit"]
 
 _BODY_SIGMA_M = 0.017
 _ARM_SIGMA_M = 0.013
@@ -27,12 +28,25 @@ _HEAD_SIGMA_M = 0.010
 _LEG_SIGMA_M = 0.011
 
 
+@dataclass(frozen=True)
+class SleeveFit:
+    """The outermost sleeve's radii at the shoulder and 30 cm down the arm, and how far its cloth stands off the trunk,
+    metres: where the cloth changes from trunk to arm."""
+
+    start: float = 0.058
+    end: float = 0.060
+    cloth: float = 0.019
+    reach: float | None = None
+    """Cloth farther than this from the sleeve never follows the arm: the long skirt of a garment needs it."""
+
+
 class Binder:
     """Weights (n, J) for points (n, 3) of the A-pose model."""
 
-    def __init__(self, rig: Rig, anatomy: Anatomy) -> None:
+    def __init__(self, rig: Rig, anatomy: Anatomy, sleeve: SleeveFit | None = None) -> None:
         self.rig = rig
         self.anatomy = anatomy
+        self.sleeve = sleeve or SleeveFit()
         arm = anatomy.arm
         self._trunk: dict[str, Field] = {
             "hips": capsule((0, 0.50, 0), (0, 0.60, 0), 0.11),
@@ -93,6 +107,18 @@ class Binder:
         weights[:, upper] = 0.0
         return np.asarray(weights + share * self.soft(points, self._left_arm, _ARM_SIGMA_M))
 
+    def sleeved(self, points: Floats) -> Floats:
+        """A garment with both sleeves in one piece: as the coat, and beyond the elbow with the forearm."""
+        weights = self.coat(points)
+        for side, flip in (("left", (1.0, 1.0, 1.0)), ("right", (-1.0, 1.0, 1.0))):
+            upper = self.rig.index[f"{side}UpperArm"]
+            share = weights[:, [upper]].copy()
+            arm = self.soft(points * flip, self._left_arm, _ARM_SIGMA_M)
+            arm = arm if side == "left" else arm[:, self.rig.mirrored_columns()]
+            weights[:, upper] = 0.0
+            weights += share * arm
+        return weights
+
     def _shoulder_shares(self, points: Floats) -> Floats:
         """(n, 2): what the left collar bone and the left upper arm hold of the cloth around the shoulder.
 
@@ -100,12 +126,16 @@ class Binder:
         is short, or a raised arm would draw the coat's side up with it like a wing.
         """
         arm = self.anatomy.arm
-        sleeve = cone(arm.at(0.0), arm.at(0.30), 0.058, 0.060)(points)
+        fit = self.sleeve
+        sleeve = cone(arm.at(0.0), arm.at(0.30), fit.start, fit.end)(points)
         over = smoothstep(-0.030, 0.030, (points - arm.shoulder) @ arm.up)
         sigma = _ARMPIT_SIGMA_M + (_SHOULDER_SIGMA_M - _ARMPIT_SIGMA_M) * over
-        towards = self.anatomy.trunk(points) - 0.019 - sleeve
+        towards = self.anatomy.trunk(points) - fit.cloth - sleeve
         upper_arm = np.where(points[:, 0] > 0, 1.0 / (1.0 + np.exp(-np.clip(towards / sigma, -40.0, 40.0))), 0.0)
         upper_arm *= smoothstep(0.055, 0.095, points[:, 0])
+        if fit.reach is not None:
+            arm_wide = capsule(arm.shoulder, arm.wrist, fit.start)(points)
+            upper_arm *= smoothstep(fit.reach, 0.4 * fit.reach, arm_wide)
         collar = smoothstep(0.050, 0.110, points[:, 0]) * smoothstep(0.815, 0.895, points[:, 1])
         return np.stack([0.85 * collar * (1 - upper_arm), upper_arm], 1)
 
@@ -148,9 +178,13 @@ class Binder:
         )
         return self.soft(points, {"chest": self._trunk["chest"]} | self._neck | {"head": skull}, _HEAD_SIGMA_M)
 
+    def collar(self, points: Floats) -> Floats:
+        """What lies around the neck."""
+        return self.soft(points, {"chest": self._trunk["chest"]} | self._neck, 0.02)
+
     def scarf(self, points: Floats, tails: tuple[Chain, Chain]) -> Floats:
         """The loop follows neck and chest, each tail its own chain (the first tail lies toward -X)."""
-        loop = self.soft(points, {"chest": self._trunk["chest"]} | self._neck, 0.02)
+        loop = self.collar(points)
         knot_y, tip_y = tails[0].points[0, 1], tails[0].points[-1, 1]
         front = smoothstep(0.06, 0.075, points[:, 2])
         hanging = (smoothstep(knot_y + 0.004, knot_y + 0.55 * (tip_y - knot_y), points[:, 1]) * front)[:, None]
@@ -171,6 +205,8 @@ class Binder:
 
     def hair(self, points: Floats, chains: Mapping[float, Chain]) -> Floats:
         """Hair is rigid to the head; below the eyes its sides and back follow the chains, keyed by azimuth in rad."""
+        if not chains:
+            return self.rigid(points, "head")
         local = points - self.anatomy.head_centre
         azimuth = np.arctan2(local[:, 0], local[:, 2])
         loose = smoothstep(0.015, -0.13, local[:, 1]) * smoothstep(np.radians(32), np.radians(50), np.abs(azimuth))
