@@ -11,9 +11,9 @@ __all__ = ["Action", "action_of"]
 
 @dataclass(frozen=True)
 class Action:
-    """kind: up down left right confirm back pointer click wheel key resize quit focus_lost.
+    """kind: up down left right confirm back pointer click release wheel key resize quit focus_lost.
 
-    at: device pixels for pointer, click, wheel. key: a character or function key's name. amount: wheel notches.
+    at: device pixels for pointer, click, release. key: a character or function key's name. amount: wheel notches.
     fast: whether shift is held (larger steps).
     """
 
@@ -51,6 +51,8 @@ def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | N
         return Action("pointer", at=_scaled(event.pos, pixel_ratio))
     if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
         return Action("click", at=_scaled(event.pos, pixel_ratio))
+    if event.type == pygame.MOUSEBUTTONUP and event.button == 1:
+        return Action("release", at=_scaled(event.pos, pixel_ratio))
     if event.type == pygame.MOUSEBUTTONDOWN and event.button == 3:
         return Action("back")
     if event.type == pygame.MOUSEWHEEL:

@@ -4,10 +4,12 @@ examples:
   run_game.py
   run_game.py play --language ja --seed 7
   run_game.py play --mode gestures --size 1600x900
+  run_game.py play --stall flea --at deal_fair --item vase
 
 keys in a talk: 1-4 say a line, O put an offer with it, left/right the amount (shift: larger steps), P the asking
 price, B only the offer, W wait, G go; space or a click goes on; F1 feelings, F2 active nodes, F3 networks, F11 full
-screen, Esc back.
+screen, Esc back. F4 opens the designer's inspector: sliders, variables, back to the last choice. A dialogue file that
+is edited while it is played is read anew; the talk goes on where it stood.
 """
 
 from __future__ import annotations
@@ -23,12 +25,15 @@ import numpy as np
 import pygame
 
 from game.app.arguments import parse_size
+from game.app.designer import warp_session
 from game.app.input import action_of
 from game.app.opening import open_session
+from game.app.screens import TalkScreen
+from game.app.session import Screen, Session
 from game.app.settings import Settings
 from game.app.window import Window
 from game.app.world import World
-from game.core.errors import MissingPart
+from game.core.errors import BadInput, MissingPart
 from game.render import Device, Level, level_named, pick_level
 
 __all__ = ["Window", "add_arguments", "need_display", "open_session", "run"]
@@ -41,6 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--stall", help="only this stall: its name or a dialogue file (default: the whole market)")
     parser.add_argument("--size", type=parse_size, default=(1280, 720), metavar="WxH", help="window size")
     parser.add_argument("--mode", choices=["full", "gestures", "body", "face"], default="full", help="what is acted")
+    parser.add_argument("--at", metavar="NODE", help="start in a talk at this node (designer mode; with --stall)")
+    parser.add_argument("--item", help="with --at: the thing talked about (default: the first)")
     parser.add_argument("--overlay", action="store_true", help="start with feelings and active nodes shown")
 
 
@@ -65,13 +72,14 @@ def run(args: argparse.Namespace) -> int:
     try:
         need_display()
         session = open_session(args)
+        screen = _warped(session, args)
         width, height = args.size
         device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)
     except MissingPart as error:
         pygame.display.quit()
         print(f"error: {error}; all the same without a window: run_game.py autoplay | snapshot", file=sys.stderr)
         return 2
-    window = Window(session, device)
+    window = Window(session, device, screen=screen)
     try:
         window.draw()
         _set_icon(window)
@@ -86,6 +94,16 @@ def run(args: argparse.Namespace) -> int:
         device.release()
         pygame.display.quit()
     return 0
+
+
+def _warped(session: Session, args: argparse.Namespace) -> Screen | None:
+    """The talk that ``--at`` asks for; None where nothing is asked. Raises BadInput for unknown nodes and items."""
+    if args.at is None:
+        if args.item is not None:
+            raise BadInput("--item", expected="--at NODE with it", seen="none")
+        return None
+    warp_session(session, args.at, args.item)
+    return TalkScreen()
 
 
 def need_display() -> None:

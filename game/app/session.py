@@ -23,7 +23,8 @@ class Session:
     """The running game as the screens see it. ``world`` is replaced by every tick; screens never change it.
 
     assets: those of the stall one stands at; during a talk, bent by its lesson. loader: reads the other stalls;
-    taken_up: whether the game saved last has been looked for.
+    taken_up: whether the game saved last has been looked for. designed: a designer has had a hand in it (a script
+    reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more.
     """
 
     assets: StepAssets
@@ -37,6 +38,7 @@ class Session:
     running: bool = True
     loader: StallLoader | None = None
     taken_up: bool = False
+    designed: bool = False
 
     @property
     def stall(self) -> str:
@@ -107,6 +109,10 @@ class Session:
         """Book the talk that has ended and step back from the table."""
         talk, marks = self.world.talk, self.world.marks
         assert talk is not None
+        if self.designed:
+            self.assets = self.market.stalls[self.stall].assets
+            self.world = leave_talk(self.world)
+            return
         readings = [Reading(self.stall, m.guess, m.label, m.face) for m in marks if m.guess]
         minutes = talk_minutes(self.market.bazaar, [m.act for m in marks[1:]])
         self.afternoon = finish_talk(self.market.bazaar, self.assets.talk, self.afternoon, talk, minutes, readings)

@@ -11,7 +11,7 @@ from typing import Any
 
 import platformdirs
 
-__all__ = ["CHOICES", "Settings", "load_settings", "save_settings", "user_folder"]
+__all__ = ["CHOICES", "TIMERS", "Settings", "load_settings", "save_settings", "user_folder"]
 
 APP = "mental-communication-game"
 
@@ -23,9 +23,13 @@ CHOICES: dict[str, tuple[Any, ...]] = {
     "captions": (False, True),
     "reduced_motion": (False, True),
     "high_contrast": (False, True),
+    "timers": ("off", "slow", "normal"),
     "quality": ("auto", "low", "medium", "default", "high", "ultra"),
 }
 """Every setting with the values it may have; the first is not always the default."""
+
+TIMERS: dict[str, float] = {"off": 0.0, "slow": 2.5, "normal": 1.0}
+"""How much of a timed choice's own time the player has; 0: no choice is timed."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class Settings:
     reduced_motion: bool = False
     high_contrast: bool = False
     quality: str = "auto"
+    timers: str = "off"
 
     def next(self, name: str) -> Settings:
         """The setting's following value, around the circle."""

@@ -39,9 +39,19 @@ from game.market import (
     surplus_share,
     turn_to_go,
 )
-from game.story import Beat, Chose, Memory, Script, Start, StoryState, advance, begin
+from game.story import Beat, Chose, Memory, Script, Start, StoryState, Warp, advance, begin
 
-__all__ = ["MONEY_STEP", "Choice", "TalkAssets", "TalkState", "ask_money", "choose", "start_talk", "talk_env"]
+__all__ = [
+    "MONEY_STEP",
+    "Choice",
+    "TalkAssets",
+    "TalkState",
+    "ask_money",
+    "choose",
+    "start_talk",
+    "talk_env",
+    "warp_talk",
+]
 
 MONEY_STEP = 10
 """Prices are spoken in whole tens of yen."""
@@ -150,6 +160,12 @@ def start_talk(
     first = TalkState(seed, item, list_price, purse, story, feeling, bargain, nothing, visit=visit)
     story, beat = advance(assets.script, story, Start(), talk_env(first, assets))
     return replace(first, story=story, beat=beat, feeling=_with_stimuli(assets, feeling, beat))
+
+
+def warp_talk(assets: TalkAssets, state: TalkState, node: str) -> TalkState:
+    """The talk at another node of its script, feelings and bargain as they are. Raises BadInput for an unknown node."""
+    story, beat = advance(assets.script, state.story, Warp(node), talk_env(state, assets))
+    return replace(state, story=story, beat=beat, feeling=_with_stimuli(assets, state.feeling, beat))
 
 
 def _with_stimuli(assets: TalkAssets, feeling: Feeling, beat: Beat) -> Feeling:

@@ -10,11 +10,12 @@ from game.app.gallery import Gallery
 from game.app.input import Action
 from game.app.market import read_stage
 from game.app.opening import AUTOSAVE, take_up
+from game.app.overlays.inspector import Inspector
 from game.app.passersby import Known, Passersby, load_cast
 from game.app.saves import SavedGame, save_game
 from game.app.screens import TalkScreen, TitleScreen
 from game.app.session import Screen, Session
-from game.app.settings import user_folder
+from game.app.settings import TIMERS, user_folder
 from game.app.stage import StageAssets, StageShow
 from game.app.step import step
 from game.app.ui import Canvas
@@ -31,7 +32,9 @@ MAX_TICKS_A_FRAME = 5
 class Window:
     """The window loop's body, the same with and without a real window."""
 
-    def __init__(self, session: Session, device: Device, level: Level | None = None) -> None:
+    def __init__(
+        self, session: Session, device: Device, level: Level | None = None, screen: Screen | None = None
+    ) -> None:
         self.session = session
         self.device = device
         self.stage = self._stage_here()
@@ -47,7 +50,8 @@ class Window:
         self.gallery = Gallery(device)
         self.cards = Cards(device, self.gallery)
         self.show = StageShow(self.stage)
-        self.screen: Screen = TitleScreen()
+        self.screen: Screen = screen or TitleScreen()
+        self.inspector = Inspector()
         self.direction = start_direction(session.stall)
         self.crowd: Passersby | None = None
         self._models: Known = {}
@@ -76,7 +80,9 @@ class Window:
         if action.kind == "key" and action.key == "f11":
             self.session.settings = self.session.settings.next("fullscreen")
             return
-        self._go(self.screen.handle(self.session, self._in_reference(action)))
+        action = self._in_reference(action)
+        if not self.inspector.handle(self.session, action):
+            self._go(self.screen.handle(self.session, action))
 
     def _in_reference(self, action: Action) -> Action:
         if action.at is None:
@@ -91,7 +97,7 @@ class Window:
 
     def _autosave(self) -> None:
         session = self.session
-        if not session.taken_up or not session.afternoon.wishes:
+        if session.designed or not session.taken_up or not session.afternoon.wishes:
             return  # nothing has begun that could be lost, and something may be saved that has
         try:
             save_game(user_folder() / AUTOSAVE, saved_game(session))
@@ -122,6 +128,9 @@ class Window:
         session = self.session
         self._follow()
         intent = Intent() if intent_from is None else intent_from.intent()
+        wanted = TIMERS[session.settings.timers]
+        if session.world.timers != wanted:
+            session.world = replace(session.world, timers=wanted)
         session.world = step(session.assets, session.world, intent)
         assert session.world.body.pose is not None
         self.show.tick(session.world.body.pose, TICK_S)
@@ -140,6 +149,7 @@ class Window:
 
     def advance(self, elapsed_s: float) -> None:
         """Let the game run for some real time, in whole ticks."""
+        self.inspector.reloader.advance(self.session, elapsed_s)
         self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
         while self._late_s >= TICK_S:
             self._late_s -= TICK_S
@@ -182,7 +192,9 @@ class Window:
 
     def _draw_hud(self, hud: Hud) -> None:
         settings = self.session.settings
-        self.screen.draw(self.session, Canvas(hud, settings.language, settings.ui_scale, self.gallery))
+        canvas = Canvas(hud, settings.language, settings.ui_scale, self.gallery)
+        self.screen.draw(self.session, canvas)
+        self.inspector.draw(self.session, canvas)
 
 
 def saved_game(session: Session) -> SavedGame:

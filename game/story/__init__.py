@@ -1,7 +1,7 @@
 """Dialogue: scripts in YAML, their expression language, their checks, and the state of a talk."""
 
 from game.story.acts import ActTable, load_acts
-from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Timer
+from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Timer, Warp
 from game.story.engine import advance, resume
 from game.story.findings import CODES, Finding, Findings
 from game.story.fix import fix_file
@@ -42,6 +42,7 @@ __all__ = [
     "TimedText",
     "TimedWord",
     "Timer",
+    "Warp",
     "advance",
     "afternoon_of",
     "begin",

@@ -9,7 +9,7 @@ from game.core.errors import BadInput
 from game.story.model import Speaker
 from game.story.text import Text
 
-__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "Timer"]
+__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "Timer", "Warp"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,14 @@ class Outcome:
     kind: str
 
 
-Event = Start | Chose | Outcome
+@dataclass(frozen=True)
+class Warp:
+    """A designer jumps to a node, whatever the talk was doing."""
+
+    node: str
+
+
+Event = Start | Chose | Outcome | Warp
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from game.core.errors import BadInput
-from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Timer
+from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Timer, Warp
 from game.story.chance import pick_weighted, uniform
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
@@ -34,12 +34,17 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     """
     if state.ended is not None:
         raise BadInput("talk", expected="one that goes on", seen=f"ended: {state.ended}")
-    if isinstance(event, Start) == state.started:
+    if isinstance(event, Start) == state.started and not isinstance(event, Warp):
         raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
     run = _Run(script, state, env)
     if isinstance(event, Start):
         came_back = script.outcomes.get("came_back") if state.visit > 1 else None
         run.walk(came_back or script.start, None)
+    elif isinstance(event, Warp):
+        if event.node not in script.nodes:
+            raise BadInput("node", expected=f"one of {script.stall}", seen=event.node)
+        run.returns.clear()
+        run.walk(event.node, None)
     elif isinstance(event, Outcome):
         run.walk(state.node, _known(event.kind, script))
     else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from game.app.input import Action
 from game.app.overlays import draw_overlays
+from game.app.overlays.timer import draw_timer
 from game.app.session import Screen, Session
 from game.app.talk import MONEY_STEP, Choice, ask_money
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
@@ -169,6 +170,7 @@ class TalkScreen:
             buttons.append(Button(choice.id, s(choice.act), place, enabled=choice.available, key=key, size=17))
         self._buttons.lay(buttons)
         self._buttons.draw(canvas)
+        draw_timer(session, canvas, Rect(left, 96, CARD_WIDTH, 6))
         # What a short button will say, in full, before it is said.
         focused = next((c for c in standing if c.id == self._buttons.focus), None)
         if focused is not None:

@@ -89,7 +89,7 @@ class SettingsScreen(MenuScreen):
     def draw(self, session: Session, canvas: Canvas) -> None:
         s = session.strings
         left = (canvas.width - 460) / 2
-        names = ["language", "text_speed", "fullscreen", "ui_scale", "captions", "reduced_motion", "quality"]
+        names = ["language", "text_speed", "fullscreen", "ui_scale", "captions", "reduced_motion", "timers", "quality"]
         canvas.panel(Rect(left - 40, 96, 540, 92 + 62 * (len(names) + 1)), border=3, shadow=14)
         canvas.text(canvas.width / 2, 116, s("settings"), 32, INK, font="title", align="center")
         buttons = [
