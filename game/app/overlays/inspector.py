@@ -13,13 +13,13 @@ from game.core.emotion_space import SIX
 
 __all__ = ["Inspector"]
 
-WIDTH, ROW = 344.0, 27.0
+WIDTH, ROW, LINE = 344.0, 23.0, 19.0
 LEFT, TOP = 14.0, 14.0
 _BACK = hex_colour("221726", 0.93)
 _RAIL = (1.0, 1.0, 1.0, 0.16)
 _WHITE = PALETTE["white"]
 _QUIET = fade(_WHITE, 0.62)
-_MAX_VARIABLES = 9
+_MAX_VARIABLES = 7
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Inspector:
         self.sliders, self.taps = [], []
         if self.open and session.world.talk is not None:
             self._draw_panel(session, canvas)
-        elif session.designed:
+        elif session.designed and not self.reloader.findings:
             self._badge(session, canvas, canvas.width / 2 - 80, 10)
         self._draw_news(session, canvas)
 
@@ -113,11 +113,9 @@ class Inspector:
         assert talk is not None
         variables = list(session.assets.talk.script.variables.items())
         shown_variables = variables[:_MAX_VARIABLES]
-        height = 92 + 6 * ROW + 12 + 3 * ROW + 26 + len(shown_variables) * 22 + 62
+        height = 80 + 9 * ROW + 30 + len(shown_variables) * LINE + 54
         canvas.panel(Rect(LEFT, TOP, WIDTH, height), _BACK, radius=14, shadow=10)
         self._badge(session, canvas, LEFT + 14, TOP + 12)
-        node = f"{talk.beat.node} · {talk.item}"
-        canvas.text(LEFT + WIDTH - 14, TOP + 14, node, 14, _WHITE, align="right")
         y = TOP + 46
         canvas.text(LEFT + 104, y, s("felt"), 14, _WHITE, font="bold")
         canvas.text(LEFT + 226, y, s("shown"), 14, _QUIET, font="bold")
@@ -127,7 +125,7 @@ class Inspector:
             self._slider(canvas, "felt", emotion, LEFT + 104, y, 104, float(talk.feeling.felt[i]), 0, 1, emotion)
             self._slider(canvas, "shown", emotion, LEFT + 226, y, 104, float(world.shown_target[i]), 0, 1, emotion)
             y += ROW
-        y += 12
+        y += 8
         bargain = talk.bargain
         for name, value, low, high in (
             ("trust", bargain.trust, 0.0, 1.0),
@@ -139,18 +137,19 @@ class Inspector:
             canvas.text(LEFT + WIDTH - 14, y - 5, f"{value:.2f}", 14, _WHITE, align="right")
             y += ROW
         canvas.text(LEFT + 16, y, s("designer_lowest", share=f"{bargain.lowest:.2f}"), 13, _QUIET)
-        y += 26
+        canvas.text(LEFT + WIDTH - 14, y, f"{talk.beat.node} · {talk.item}", 13, _WHITE, align="right")
+        y += 22
         for name, _ in shown_variables:
             self._variable(canvas, name, talk.story.variables[name], y)
-            y += 22
+            y += LINE
         more = len(variables) - len(shown_variables)
         if more:
-            canvas.text(LEFT + 16, y - 2, f"+{more}", 13, _QUIET)
-        y += 12
-        button = Rect(LEFT + 14, y, WIDTH - 28, 34)
+            canvas.text(LEFT + 16, y - 1, f"+{more}", 12, _QUIET)
+        y += 16
+        button = Rect(LEFT + 14, y, WIDTH - 28, 30)
         can = bool(world.marks) and world.marks[-1].before is not None
         canvas.panel(button, fade(PALETTE["teal"], 1.0 if can else 0.4), radius=12)
-        canvas.text(button.x + button.w / 2, button.y + 7, s("designer_back"), 16, _WHITE, align="center")
+        canvas.text(button.x + button.w / 2, button.y + 5, s("designer_back"), 15, _WHITE, align="center")
         if can:
             self.taps.append((button, "\0back", 0.0))
 
@@ -179,16 +178,16 @@ class Inspector:
         canvas.text(LEFT + 16, y, name, 14, _QUIET)
         right = LEFT + WIDTH - 14
         if isinstance(value, bool):
-            place = Rect(right - 60, y - 1, 60, 20)
+            place = Rect(right - 60, y, 60, 17)
             canvas.panel(place, PALETTE["teal"] if value else _RAIL, radius=10)
-            canvas.text(place.x + 30, y + 1, str(value).lower(), 13, _WHITE, align="center")
+            canvas.text(place.x + 30, y, str(value).lower(), 13, _WHITE, align="center")
             self.taps.append((place, name, not value))
         elif isinstance(value, float):
             canvas.text(right - 44, y, f"{value:g}", 14, _WHITE, align="center")
             for sign, x in ((-1.0, right - 88), (1.0, right - 20)):
-                place = Rect(x, y - 1, 20, 20)
+                place = Rect(x, y, 20, 17)
                 canvas.panel(place, _RAIL, radius=10)
-                canvas.text(x + 10, y, "−" if sign < 0 else "+", 14, _WHITE, align="center")
+                canvas.text(x + 10, y - 1, "−" if sign < 0 else "+", 14, _WHITE, align="center")
                 self.taps.append((place, name, value + sign))
         else:
             canvas.text(right, y, value or '""', 14, _WHITE, align="right")
