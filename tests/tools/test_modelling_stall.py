@@ -18,7 +18,7 @@ from game.tools.modelling.stall import load_stall
 
 FOLDER = ASSETS / "stalls"
 STALLS = sorted(path.stem for path in FOLDER.glob("*.yaml"))
-SAMPLE = {"flea": "cups", "antiques": "tea_bowl"}
+SAMPLE = {"flea": "cups", "antiques": "tea_bowl", "toys": "kendama"}
 """One item of each stall that is quick to model."""
 
 
@@ -99,7 +99,7 @@ def test_goods_shown_large_are_detailed_but_not_heavy(name) -> None:
     stall = read(name)
     for node in stall.nodes:
         if node.name.startswith("item:"):
-            assert 1500 <= triangle_count(stall, node.name) <= 7800, node.name
+            assert 1500 <= triangle_count(stall, node.name) <= 9000, node.name
 
 
 @pytest.mark.parametrize("name", [name for name in STALLS if name != "flea"])

@@ -9,6 +9,8 @@ from game.tools.modelling.goods_flea import FLEA_GOODS
 from game.tools.modelling.goods_heirlooms import folding_fan, incense_burner
 from game.tools.modelling.goods_scholar import ink_stone, noh_mask
 from game.tools.modelling.goods_shapes import Good
+from game.tools.modelling.goods_tin import tin_robot, toy_train, wind_up_bird
+from game.tools.modelling.goods_toys import kendama, kokeshi, spinning_top, teddy_bear
 
 __all__ = ["GOODS"]
 
@@ -21,5 +23,12 @@ GOODS: Mapping[str, Good] = {
     "incense_burner": incense_burner,
     "ink_stone": ink_stone,
     "noh_mask": noh_mask,
+    "tin_robot": tin_robot,
+    "kokeshi": kokeshi,
+    "spinning_top": spinning_top,
+    "kendama": kendama,
+    "wind_up_bird": wind_up_bird,
+    "toy_train": toy_train,
+    "teddy_bear": teddy_bear,
 }
 """Item id -> its parts, about the point (0, 0, 0) where it stands, facing +Z."""

@@ -113,10 +113,17 @@ def disc(x: float, y: float, radius: float | tuple[float, float], count: int = 1
 
 
 def star(
-    x: float, y: float, radius: float, lobes: int, depth: float, sharp: float = 1.0, turn_deg: float = 90.0
+    x: float,
+    y: float,
+    radius: float,
+    lobes: int,
+    depth: float,
+    sharp: float = 1.0,
+    turn_deg: float = 90.0,
+    steps: int = 8,
 ) -> Floats:
-    """Outline of a flower, leaf or star: ``lobes`` tips at ``radius``, the hollows ``depth`` (0..1) deep."""
-    angle = np.linspace(0.0, 2 * np.pi, lobes * 8, endpoint=False)
+    """Outline of a flower or star: ``lobes`` tips at ``radius``, hollows ``depth`` (0..1) deep, ``steps`` to a lobe."""
+    angle = np.linspace(0.0, 2 * np.pi, lobes * steps, endpoint=False)
     wave = (0.5 + 0.5 * np.cos(lobes * angle)) ** sharp
     r = radius * (1.0 - depth * (1.0 - wave))
     turn = np.radians(turn_deg)

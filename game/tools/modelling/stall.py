@@ -38,6 +38,7 @@ from game.tools.modelling.parts import Part
 from game.tools.modelling.pieces import Moving, Piece, read_piece
 from game.tools.modelling.spec import Swatch, read_palette
 from game.tools.modelling.stall_back import FoldingScreen, Shelf
+from game.tools.modelling.stall_fair import Balloons, ChalkBoard, Crates, Pinwheels
 from game.tools.modelling.stall_front import Boards, Front, Runner, Tray
 from game.tools.modelling.stall_roof import Awning, Bulbs, Bunting, Lanterns, Noren
 
@@ -55,6 +56,10 @@ PIECES: Mapping[str, type[Any]] = {
     "lanterns": Lanterns,
     "folding_screen": FoldingScreen,
     "shelf": Shelf,
+    "crates": Crates,
+    "balloons": Balloons,
+    "pinwheels": Pinwheels,
+    "chalk_board": ChalkBoard,
 }
 """What ``piece`` may name in a stall's YAML."""
 

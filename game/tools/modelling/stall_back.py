@@ -136,9 +136,9 @@ class Shelf:
 
     def _ware(self, number: int, at: Floats) -> list[Part]:
         """Jar, bowl stack, gourd bottle, scrolls, or box; which one follows from its number."""
-        colour = self.wares[(number * 5 + 1) % len(self.wares)]
+        colour = self.wares[(number * 5 + number // 7 + 1) % len(self.wares)]
         second = self.wares[(number * 3 + 2) % len(self.wares)]
-        kind = (number * 4 + number // 3) % 5
+        kind = (number * 3 + number // 7 * 2) % 5
         if kind == 0:
             jar = [
                 (0.001, 0),

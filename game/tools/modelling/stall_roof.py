@@ -143,10 +143,11 @@ def two_sided(front: Mesh) -> Mesh:
 class Noren:
     """A split curtain under the eaves. bottoms: the height of each panel's lower edge from left to right, metres.
 
-    The outermost panels carry a round crest; a band of ``trim`` runs along every lower edge.
+    marked: the panels (counted from 0) that carry a round crest; a band of ``trim`` runs along every lower edge.
     """
 
     bottoms: tuple[float, ...]
+    marked: tuple[int, ...]
     half_width: float
     z: float
     cloth: Colour
@@ -169,7 +170,7 @@ class Noren:
             parts = [Part("noren", self.cloth, two_sided(sheet(panel, 16, 14)), None, 0.8)]
             rim = partial(_panel, x0, x1, bottom + 0.020, bottom + 0.012, self.z + 0.0016, float(k))
             parts.append(Part("noren_trim", self.trim, sheet(rim, 16, 2), None, 0.0))
-            if k in (0, len(self.bottoms) - 1):
+            if k in self.marked:
                 parts += self._mark((x0 + x1) / 2, bottom + 0.095, x1 - x0, k)
             panels.append(Hanging(((x0 + x1) / 2, _ROD_Y_M, self.z), parts))
         return (Moving("noren", "sway", (1.0, 0.0, 0.0), 3.0, 3.4, panels),)
@@ -185,14 +186,14 @@ class Noren:
 
         radius = min(0.062, width * 0.3)
         parts = [
-            Part("mark", self.crest, inlay(disc(x, y, radius, 36), surface, 0.0016, 3), None, 0.0),
-            Part("mark", self.cloth, inlay(disc(x, y, radius * 0.86, 36), surface, 0.0022, 3), None, 0.0),
+            Part("mark", self.crest, inlay(disc(x, y, radius, 36), surface, 0.0035, 4), None, 0.0),
+            Part("mark", self.cloth, inlay(disc(x, y, radius * 0.86, 36), surface, 0.0050, 4), None, 0.0),
         ]
         for k in range(3):
             turn = 90.0 + 120.0 * k
             cx, cy = x + radius * 0.42 * np.cos(np.radians(turn)), y + radius * 0.42 * np.sin(np.radians(turn))
             leaf = disc(float(cx), float(cy), (radius * 0.40, radius * 0.17), 18, turn)
-            parts.append(Part("mark", self.crest, inlay(leaf, surface, 0.0030, 2), None, 0.0))
+            parts.append(Part("mark", self.crest, inlay(leaf, surface, 0.0065, 3), None, 0.0))
         return parts
 
 
