@@ -9,8 +9,9 @@ from game.tools.modelling.goods_flea import FLEA_GOODS
 from game.tools.modelling.goods_heirlooms import folding_fan, incense_burner
 from game.tools.modelling.goods_scholar import ink_stone, noh_mask
 from game.tools.modelling.goods_shapes import Good
-from game.tools.modelling.goods_tin import tin_robot, toy_train, wind_up_bird
+from game.tools.modelling.goods_tin import tin_robot, wind_up_bird
 from game.tools.modelling.goods_toys import kendama, kokeshi, spinning_top, teddy_bear
+from game.tools.modelling.goods_train import toy_train
 
 __all__ = ["GOODS"]
 

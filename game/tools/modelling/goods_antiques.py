@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from game.tools.modelling.fields import Floats, unit
-from game.tools.modelling.goods_shapes import cord, disc, inlay, leaning, part, spun, star, stroke, tassel
+from game.tools.modelling.goods_shapes import cord, disc, facing, inlay, leaning, part, spun, star, stroke, tassel
 from game.tools.modelling.lofts import lathe, loft, rounded_box, sheet, smooth_curve
 from game.tools.modelling.mesh import Mesh, joined, split_at_level
 from game.tools.modelling.parts import Part
@@ -16,12 +16,6 @@ __all__ = ["lacquer_box", "pocket_watch", "tea_bowl"]
 
 _WATCH_TILT_DEG = -24.0
 _WATCH_AT = (0.012, 0.098, -0.004)
-
-
-def _facing(z: float, flat: Floats) -> tuple[Floats, Floats]:
-    """The plane at depth z, seen from +Z."""
-    count = len(flat)
-    return np.stack([flat[:, 0], flat[:, 1], np.full(count, z)], 1), np.tile([0.0, 0.0, 1.0], (count, 1))
 
 
 def _forward(mesh: Mesh) -> Mesh:
@@ -40,7 +34,7 @@ def pocket_watch() -> list[Part]:
     for k in range(36):
         tooth = rounded_box((0.0638, 0, 0), (0.0016, 0.0014, 0.0045), 0.001, cuts=2)
         watch.append(("milling", "old_gold", leaning(tooth, (0, 0, 10.0 * k)), 0.0))
-    face = partial(_facing, 0.0085)
+    face = partial(facing, 0.0085)
     watch.append(("dial", "enamel", inlay(disc(0, 0, 0.0525, 32), face, 0.0), 0.0))
     watch.append(("track", "ink", inlay(disc(0, 0, 0.0490, 32), face, 0.0004), 0.0))
     watch.append(("dial", "enamel", inlay(disc(0, 0, 0.0482, 32), face, 0.0007), 0.0))
@@ -83,7 +77,7 @@ def pocket_watch() -> list[Part]:
     outline = [(0.001, -0.0075), (0.036, -0.0065), (0.056, -0.001), (0.060, 0.004), (0.0575, 0.005), (0.052, 0.001)]
     lid = _forward(spun([*outline, (0.030, -0.003), (0.001, -0.004)], 32, 16))
     lid_parts = [("lid", "gold", lid, 1.0)]
-    inner = partial(_facing, 0.0)
+    inner = partial(facing, 0.0)
     lid_parts.append(("mirror", "old_gold", inlay(disc(0, 0, 0.046, 28), inner, 0.0014), 0.0))
     lid_parts.append(("engraving", "gold", inlay(star(0, 0, 0.044, 16, 0.22, 0.6), inner, 0.0020), 0.0))
     lid_parts.append(("engraving", "old_gold", inlay(star(0, 0, 0.029, 12, 0.30, 0.7), inner, 0.0025), 0.0))

@@ -19,7 +19,9 @@ __all__ = [
     "banded",
     "cord",
     "cut_below",
+    "cylinder",
     "disc",
+    "facing",
     "inlay",
     "leaning",
     "onto",
@@ -91,6 +93,20 @@ def banded(mesh: Mesh, low: float, high: float) -> tuple[Mesh, Mesh]:
     upper, below = split_at_level(mesh, mesh.position[:, 1] - low)
     above, band = split_at_level(upper, upper.position[:, 1] - high)
     return band, joined([above, below])
+
+
+def facing(z: float, flat: Floats) -> tuple[Floats, Floats]:
+    """The plane at depth z, seen from +Z."""
+    return np.column_stack([flat, np.full(len(flat), z)]), np.tile([0.0, 0.0, 1.0], (len(flat), 1))
+
+
+def cylinder(radius: float, half: float, sides: int = 16, edge: float = 0.0012) -> Mesh:
+    """About +Y, its middle at the origin."""
+    return lathe(
+        [(1e-4, -half), (radius - edge, -half), (radius, -half + edge), (radius, half - edge), (radius - edge, half)]
+        + [(1e-4, half)],
+        sides,
+    )
 
 
 def leaning(mesh: Mesh, degrees: tuple[float, float, float], at: ArrayLike = (0.0, 0.0, 0.0)) -> Mesh:
