@@ -25,7 +25,7 @@ from game.embos.units_file import one_of
 from game.formats.bvh import read_bvh
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["Span", "Take", "read_takes"]
+__all__ = ["Span", "Take", "check_frames", "read_takes"]
 
 _OFFSET_TOLERANCE_M = 0.005
 _LEAST_POSTURE_S = 1.0
@@ -89,7 +89,7 @@ def read_takes(folder: Path, repertoire: Mapping[str, Behaviour], findings: Find
 def _take(
     path: Path, root: Node, repertoire: Mapping[str, Behaviour], findings: Findings, emotions: set[int]
 ) -> Take | None:
-    root.only("take", "emotion", "bvh", "author", "version", "fps", "spans", "note", "licence")
+    root.only("take", "emotion", "bvh", "author", "version", "fps", "frames", "spans", "spoken", "note", "licence")
     emotion, clip = -1, None
     name = path.stem
     with findings.collect():
@@ -179,7 +179,10 @@ def _spans(root: Node, repertoire: Mapping[str, Behaviour], clip: TakeClip | Non
         findings.add(BadInput("take", where=root.where, expected="annotated spans", seen="none"))
     for node in items:
         with findings.collect():
-            spans.append(_span(node, repertoire, clip))
+            span = _span(node, repertoire, clip)
+            # What a program proposed and nobody has looked at is not yet an observation.
+            if node.get("confidence") is None:
+                spans.append(span)
     for layer in LAYERS:
         # Within one layer only one thing can be done at a time.
         own = sorted((s for s in spans if s.layer == layer), key=lambda s: (s.start_s, s.end_s))
@@ -198,8 +201,16 @@ def _spans(root: Node, repertoire: Mapping[str, Behaviour], clip: TakeClip | Non
     return spans
 
 
+def check_frames(node: Node, start_s: float, end_s: float, fps: float) -> None:
+    """Raises BadInput where a span's frames do not agree with its seconds to within one frame."""
+    pair = [frame.as_int(0, 10_000_000) for frame in node.as_list()]
+    wanted = (start_s * fps, end_s * fps)
+    if len(pair) != 2 or any(abs(f - t) > 1.0 + 1e-6 for f, t in zip(pair, wanted, strict=True)):
+        raise node.error("frames", expected=f"[{round(wanted[0])}, {round(wanted[1])}], as the seconds say")
+
+
 def _span(node: Node, repertoire: Mapping[str, Behaviour], clip: TakeClip | None) -> Span:
-    node.only("layer", "behaviour", "start_s", "end_s", "stroke_s", "words", "note")
+    node.only("layer", "behaviour", "start_s", "end_s", "frames", "stroke_s", "words", "note", "confidence")
     layer = one_of(node["layer"], LAYERS)
     behaviour = node["behaviour"].as_str()
     known = repertoire.get(behaviour)
@@ -218,6 +229,9 @@ def _span(node: Node, repertoire: Mapping[str, Behaviour], clip: TakeClip | None
         raise node["end_s"].error("span outside the clip", expected=f"at most {clip.length_s:.3f} s")
     if layer == "posture" and end_s - start_s < _LEAST_POSTURE_S - _SLACK_S:
         raise node["end_s"].error("posture", expected=f"at least {_LEAST_POSTURE_S:g} s after {start_s:g} s")
+    frames = node.get("frames")
+    if frames is not None and clip is not None:
+        check_frames(frames, start_s, end_s, 1.0 / clip.frame_time_s)
     stroke = node.get("stroke_s")
     stroke_s = stroke.as_float() if stroke else None
     if stroke is not None and stroke_s is not None and not start_s <= stroke_s <= end_s:
