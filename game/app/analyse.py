@@ -4,6 +4,7 @@ Examples:
   run_game.py analyse                         remake assets/motion from its takes
   run_game.py analyse --check                 compare with what is there; exit 1 if it differs
   run_game.py analyse my_takes --out my_takes/units.yaml
+  run_game.py analyse --learning-curve curve.png --json   how many minutes of takes are enough; writes no units
 A folder of takes holds NAME.yaml and NAME.bvh per take; behaviours.yaml stands in it or beside it.
 """
 
@@ -12,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +24,7 @@ from game.embos.analysis import annotated_s, shares, transitions, units_of
 from game.embos.annotations import Take, read_takes
 from game.embos.clips import pack_clips, same_clips
 from game.embos.findings import Findings
-from game.embos.repertoire import read_repertoire
+from game.embos.repertoire import Behaviour, read_repertoire
 from game.embos.statistics import ALPHA
 from game.embos.units import LAYERS, MotionUnit
 from game.embos.units_file import units_text
@@ -39,6 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, help="units file (default: units.yaml beside TAKES), clips.npz with it")
     parser.add_argument("--check", action="store_true", help="write nothing; exit 1 if the files would change")
     parser.add_argument("--alpha", type=float, default=ALPHA, help="importance against universality in eq. 2")
+    parser.add_argument(
+        "--learning-curve", type=Path, nargs="?", const=Path(), metavar="PNG",
+        help="resample the takes: how far shorter ones are from the whole (a plot needs the `reports` extra)",
+    )  # fmt: skip
+    parser.add_argument("--draws", type=int, default=8, help="stretches drawn per length of the curve (default 8)")
+    parser.add_argument("--seed", type=int, default=1, help="of the curve's draws (default 1)")
     parser.add_argument("--json", action="store_true", help="machine-readable result")
 
 
@@ -55,6 +63,8 @@ def run(args: argparse.Namespace) -> int:
     takes = read_takes(folder, repertoire, findings)
     if len(findings):
         return _report(findings, as_json=args.json)
+    if args.learning_curve is not None:
+        return _learning_curve(takes, repertoire, args)
     units = units_of(takes, repertoire, args.alpha)
     for layer in LAYERS:
         if not any(unit.layer == layer for unit in units):
@@ -74,6 +84,31 @@ def run(args: argparse.Namespace) -> int:
         temporary.replace(clips)
     _summary(takes, units, out, differs, check=args.check, as_json=args.json)
     return 1 if args.check and differs else 0
+
+
+def _learning_curve(takes: list[Take], repertoire: Mapping[str, Behaviour], args: argparse.Namespace) -> int:
+    from game.tools.annotate.curve_plot import check_plot, plot_curve
+    from game.tools.annotate.learning_curve import MEASURES, learning_curve
+
+    if not 2 <= args.draws <= 1000:
+        raise BadInput("--draws", expected="2 to 1000", seen=args.draws)
+    plot = args.learning_curve if args.learning_curve.name else None
+    if plot is not None:
+        check_plot(plot)
+    curve = learning_curve(takes, repertoire, draws=args.draws, seed=args.seed)
+    if plot is not None:
+        plot_curve(curve, plot)
+    if args.json:
+        print(json.dumps(curve.row()))
+        return 0
+    print(f"{'take length':>12}  " + "  ".join(f"{name:>22}" for name in MEASURES))
+    for p in curve.points:
+        cells = (f"{p.mean[m]:.3f} [{p.low[m]:.3f}, {p.high[m]:.3f}]" for m in MEASURES)
+        print(f"{p.length_s:10.0f} s  " + "  ".join(f"{cell:>22}" for cell in cells))
+    print(f"the dice alone make the behaviour differ by {curve.dice:.3f}")
+    enough = f"{curve.enough_s:.0f} s a take" if curve.enough_s is not None else "more than these takes have"
+    print(f"enough for this repertoire: {enough}")
+    return 0
 
 
 def _report(findings: Findings, *, as_json: bool) -> int:

@@ -22,6 +22,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "perform": ("game.app.perform", "let one body live in one feeling: every start with its reason, and shares"),
     "inspect": ("game.app.inspect", "show what is in a BVH, glTF or VRM file"),
     "analyse": ("game.app.analyse", "turn annotated takes into motion units"),
+    "annotate": ("game.app.annotate", "mark what is seen in takes, by hand or by program"),
     "retarget": ("game.app.retarget", "bring anyone's motion onto the project's skeleton"),
     "face": ("game.app.face", "propose, rate, fit and author faces"),
     "lint": ("game.app.lint", "check dialogue scripts"),

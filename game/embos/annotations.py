@@ -25,7 +25,7 @@ from game.embos.units_file import one_of
 from game.formats.bvh import read_bvh
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["Span", "Take", "check_frames", "read_takes"]
+__all__ = ["Span", "Take", "check_frames", "read_takes", "reference_clip"]
 
 _OFFSET_TOLERANCE_M = 0.005
 _LEAST_POSTURE_S = 1.0
@@ -103,17 +103,16 @@ def _take(
         if Path(bvh).name != bvh or bvh in {"", ".", ".."}:
             raise root["bvh"].error("bvh", expected="a file name in this folder")
         with findings.collect(reading=True):
-            clip = _clip(path.parent / bvh, root)
+            clip = reference_clip(path.parent / bvh, root.get("fps"))
     spans = _spans(root, repertoire, clip, findings)
     if emotion < 0 or clip is None or not spans:
         return None
     return Take(name, emotion, clip, tuple(sorted(spans, key=lambda span: (span.start_s, span.layer))))
 
 
-def _clip(path: Path, root: Node) -> TakeClip:
-    """The take's motion on the reference skeleton."""
+def reference_clip(path: Path, fps: Node | None = None) -> TakeClip:
+    """A BVH file's motion on the reference skeleton. fps: what its annotation says, to be checked. Raises BadInput."""
     clip = read_bvh(path).clip
-    fps = root.get("fps")
     if fps and abs(fps.as_float(1.0, 1000.0) * clip.frame_time_s - 1.0) > 1e-3:
         raise fps.error("fps", expected=f"{1.0 / clip.frame_time_s:.3f} as in {path.name}")
     skeleton = clip.skeleton

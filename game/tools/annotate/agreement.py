@@ -34,7 +34,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Agreement:
-    """kappa, observed: per layer, kappa in −1..1 (nan where there is nothing to disagree about), observed share 0..1."""
+    """Per layer: kappa in −1..1 (nan where there is nothing to disagree about), observed share of equal frames."""
 
     kappa: dict[str, float]
     observed: dict[str, float]

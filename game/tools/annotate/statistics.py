@@ -1,4 +1,4 @@
-"""What a set of annotations says at this moment: eq. 2 and 3 with every edit, profiles, transitions, what is missing."""
+"""What a set of annotations says at this moment: eq. 2 and 3, profiles, transitions, and what is missing."""
 
 from __future__ import annotations
 

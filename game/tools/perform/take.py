@@ -11,6 +11,8 @@ import numpy as np
 from game.core import EMOTIONS, Clip
 from game.core.errors import BadInput
 from game.formats.bvh import write_bvh
+from game.tools.annotate.document import Document, Mark, on_grid
+from game.tools.annotate.files import document_text
 from game.tools.perform.act import Act
 from game.tools.perform.carriage import CARRIAGE
 from game.tools.perform.data import MOTION, Behaviour, Cue, Score, load_effort, load_hands, load_repertoire, load_score
@@ -155,26 +157,18 @@ def perform_take(emotion: str, seed: int | None = None, length_s: float | None =
     return perform_score(score, score.seed if seed is None else seed, length_s)
 
 
-def annotation_yaml(annotation: Annotation) -> str:
-    """The annotation as the text of a take's YAML file."""
-    lines = [
-        f"take: {annotation.take}",
-        f"emotion: {annotation.emotion}",
-        f"bvh: {annotation.take}.bvh",
-        f"author: {_AUTHOR}",
-        "version: 1",
-        f"fps: {round(1.0 / DT_S)}",
-        "spans:",
-    ]
+def annotation_yaml(annotation: Annotation, frames: int) -> str:
+    """The annotation of a motion of so many frames as the text of a take's YAML file."""
+    marks = []
     for span in annotation.spans:
-        text = f"layer: {span.layer}, behaviour: {span.behaviour}, start_s: {span.start_s:.3f}, end_s: {span.end_s:.3f}"
-        if span.stroke_s is not None:
-            text += f", stroke_s: {span.stroke_s:.3f}"
-        if span.words is not None:
-            quoted = span.words.replace("'", "''")  # YAML's way to write an apostrophe in single quotes
-            text += f", words: '{quoted}'"
-        lines.append(f"  - {{{text}}}")
-    return "\n".join(lines) + "\n"
+        stroke_s = None if span.stroke_s is None else on_grid(span.stroke_s)
+        place = on_grid(span.start_s), on_grid(span.end_s)
+        marks.append(Mark(*place, span.layer, span.behaviour, stroke_s, span.words or ""))
+    document = Document(
+        take=annotation.take, bvh=f"{annotation.take}.bvh", fps=round(1.0 / DT_S), frames=frames,
+        emotion=annotation.emotion, author=_AUTHOR,
+    )  # fmt: skip
+    return document_text(document.with_marks(marks))
 
 
 def build_takes(out_dir: Path = MOTION / "takes") -> list[Path]:
@@ -185,6 +179,6 @@ def build_takes(out_dir: Path = MOTION / "takes") -> list[Path]:
         clip, annotation = perform_take(emotion)
         motion, notes = out_dir / f"{emotion}.bvh", out_dir / f"{emotion}.yaml"
         write_bvh(clip, motion, decimals=4)
-        notes.write_text(annotation_yaml(annotation), encoding="utf-8")
+        notes.write_text(annotation_yaml(annotation, len(clip)), encoding="utf-8")
         written += [motion, notes]
     return written
