@@ -9,7 +9,19 @@ import pytest
 
 from game.core.paths import ASSETS
 from game.formats.yaml_source import load_yaml
-from game.story import ACTS, TimedText, load_script, memory_of, shipped_stalls, wrap
+from game.story import (
+    ACTS,
+    Memory,
+    Start,
+    TimedText,
+    advance,
+    afternoon_of,
+    begin,
+    load_script,
+    memory_of,
+    shipped_stalls,
+    wrap,
+)
 from game.story.text import slots
 
 STALLS = [path.stem for path in shipped_stalls()]
@@ -18,6 +30,10 @@ STALLS = [path.stem for path in shipped_stalls()]
 @pytest.fixture(scope="module", params=STALLS)
 def stall(request):
     return next(load_script(path) for path in shipped_stalls() if path.stem == request.param)
+
+
+def shipped(name):
+    return next(load_script(path) for path in shipped_stalls() if path.stem == name)
 
 
 def test_size_of_the_stall(stall):
@@ -59,6 +75,44 @@ def test_she_remembers(flea, talk):
     assert {talk(flea, item="vase", memory=memory, seed=s).beat.lines[0].id for s in range(30)} >= {"again_hidden"}
     other = talk(flea, item="cups", memory=memory)
     assert [line.id for line in other.beat.lines][1] == "about_cups"
+
+
+def test_what_he_told_changes_how_it_ends(talk):
+    """Who has asked about ten to two sees the watch wound; who has not, buys a watch."""
+    antiques = shipped("antiques")
+    for hour, ending in ((0, "good_deal"), (2, "wound"), (3, "wound")):
+        known = Memory(visits=1, variables={"hour": hour})
+        player = talk(antiques, item="pocket_watch", memory=known)
+        player.choose("offer", "deal", offer=5400, deal_price=5400)
+        assert player.beat.ended == ending
+        assert ("wound_owed" in player.state.said) == (hour == 2)
+    assert memory_of(antiques, player.state).variables["hour"] == 3
+
+
+@pytest.mark.parametrize(("item", "ending"), [("teddy_bear", "bear_stays"), ("kokeshi", "left_friends")])
+def test_what_nobody_was_meant_to_buy_stays(item, ending, talk):
+    player = talk(shipped("toys"), item=item)
+    player.choose("leave", "walked_away", trust=0.6)
+    assert player.beat.ended == ending
+
+
+@pytest.mark.parametrize(("stall", "line"), [("antiques", "hub_flea_cross"), ("toys", "hub_flea_cross")])
+def test_the_market_hears_how_she_was_treated(stall, line, flea, talk):
+    """A quarrel at one stall is known at the others, for the afternoon."""
+    rude = talk(flea, item="vase")
+    for _ in range(2):
+        rude.choose("offer", "insulted", offer=900, offer_result="insult")
+    rude.choose("wait", "out_of_patience", trust=0.1)
+    news = afternoon_of(flea, rude.state)
+    assert news["flea_news"] == "cross"
+    other = shipped(stall)
+    item = next(iter(other.items))
+    for heard in (news, {}):
+        said = set()
+        for seed in range(60):
+            state, _ = advance(other, begin(other, item, seed, afternoon=heard), Start(), {"list_price": 3000})
+            said |= state.said
+        assert (line in said) == bool(heard)
 
 
 def test_nothing_repeats_word_for_word_within_a_talk(stall, talk):
