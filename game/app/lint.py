@@ -7,6 +7,7 @@ Examples:
   run_game.py lint
   run_game.py lint dialogue/flea.yaml --json
   run_game.py lint --fix
+  run_game.py lint dialogue/toys.yaml --walks 500 --seed 7
   run_game.py lint --codes
 """
 
@@ -43,6 +44,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--schema", action="store_true", help="write dialogue/schema.json (editor completion and hover), and stop"
     )
+    parser.add_argument(
+        "--walks", type=int, default=0, metavar="N", help="also play N random talks through each stall (default 0)"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random talks (default 1)")
     parser.add_argument("--purse", type=int, default=PURSE, help=f"what the player can spend (default {PURSE})")
     parser.add_argument("--codes", action="store_true", help="list the codes and what they mean, and stop")
 
@@ -59,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
         return 0
     paths = [_short(path) for path in args.paths]
     fixed = _fix(paths, accept=args.accept) if args.fix or args.accept else {}
-    findings = lint_files(paths, args.purse)
+    findings = lint_files(paths, args.purse, walks=min(args.walks, 100_000), seed=args.seed)
     counts = Counter(finding.severity for finding in findings)
     if args.json:
         print(

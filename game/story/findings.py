@@ -63,6 +63,8 @@ CODES: dict[str, str] = {
     "W_REPEATED_TEXT": "the same words under two ids: they could be spoken twice in a talk",
     "W_FALLS_THROUGH": "a list of ways on whose last one has a condition",
     "W_SILENT_REACTION": "a reaction with nothing to say for some way the line can land",
+    "W_NO_ANSWER": "a choice that was left without a word in random talks (--walks)",
+    "I_NOT_WALKED": "a node that no random talk came to (--walks)",
     "I_NOT_INCLUDED": "a part that no stall beside it includes",
     "I_NOT_LOCKED": "a stall, or lines of it, that translations.lock.yaml does not know yet",
     "I_ALWAYS": "a condition that always holds",

@@ -11,11 +11,13 @@ from game.formats.yaml_source import load_yaml
 from game.story.acts import acts_from
 from game.story.findings import Finding, Findings
 from game.story.grammar import PART
+from game.story.model import Script
 from game.story.quality import check_quality
 from game.story.reader import is_stall, read_script
 from game.story.source import Source
 from game.story.surroundings import load_faces, load_person
 from game.story.translations import read_lock
+from game.story.walks import walk_script
 
 __all__ = ["dialogue_files", "lint_files", "lint_text"]
 
@@ -37,10 +39,11 @@ def dialogue_files(paths: Iterable[Path]) -> list[Path]:
     return list(out)
 
 
-def lint_files(paths: Iterable[Path], purse: int | None = None) -> list[Finding]:
+def lint_files(paths: Iterable[Path], purse: int | None = None, *, walks: int = 0, seed: int = 1) -> list[Finding]:
     """Findings of all dialogue files at and below some paths, by file and place.
 
-    purse: what the player can spend in an afternoon, to find what nobody can buy.
+    purse: what the player can spend in an afternoon, to find what nobody can buy. walks: so many random talks, by
+    ``seed``, are played through each stall without errors.
     """
     findings = Findings()
     parts: list[tuple[Path, str]] = []
@@ -53,7 +56,10 @@ def lint_files(paths: Iterable[Path], purse: int | None = None) -> list[Finding]
         if _kind(text) == "part":
             parts.append((path, text))
         else:
-            lint_text(path, text, findings, purse)
+            script = lint_text(path, text, findings, purse)
+            faulty = {finding.where.path for finding in findings.errors}
+            if walks > 0 and script is not None and not faulty & {*script.files}:
+                walk_script(script, findings, walks, seed)
     known = {path.resolve() for path in findings.files}
     for path, text in parts:
         if path.resolve() not in known:
@@ -91,8 +97,11 @@ def _lint_part(path: Path, text: str, findings: Findings) -> None:
             findings.add("I_NOT_INCLUDED", source.root.where, "no stall includes this part; its lines are not checked")
 
 
-def lint_text(path: Path, text: str, findings: Findings, purse: int | None = None) -> None:
-    """Check one file's text; ``path`` tells which kind of file it is and where the others stand."""
+def lint_text(path: Path, text: str, findings: Findings, purse: int | None = None) -> Script | None:
+    """Check one file's text; ``path`` tells which kind of file it is and where the others stand.
+
+    Returns the script, where the file is a stall that could be read.
+    """
     kind = _kind(text)
     if kind == "person":
         _check(path, text, findings, lambda: load_person(path))
@@ -106,6 +115,8 @@ def lint_text(path: Path, text: str, findings: Findings, purse: int | None = Non
         script = read_script(path, findings, text)
         if script is not None:
             check_quality(script, findings, purse)
+        return script
+    return None
 
 
 def _check(path: Path, text: str, findings: Findings, read: Callable[[], object]) -> None:
