@@ -29,7 +29,7 @@ from game.core.errors import BadInput
 from game.core.humanoid import FINGERS, REFERENCE
 from game.core.skeleton import Skeleton
 
-__all__ = ["Rig"]
+__all__ = ["EyeBones", "Rig"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -48,6 +48,19 @@ _TIPS = {f"{s}{f}Distal": f"{s}{f}Intermediate" for s in _SIDES for f in FINGERS
 }
 
 
+@dataclass(frozen=True)
+class EyeBones:
+    """Joints of the left and the right eye, and how far they turn when the gaze is at its end (degrees): toward the
+    nose, away from it, down, up."""
+
+    left: int
+    right: int
+    inner_deg: float
+    outer_deg: float
+    down_deg: float
+    up_deg: float
+
+
 @dataclass(frozen=True, eq=False)
 class Rig:
     """A character's skeleton and skin. Make it with from_arrays.
@@ -57,7 +70,8 @@ class Rig:
     the reference lacks and curl: (C,) joints of the reference share. folds: (bone, missing bone below or above it)
     pairs: the bone takes both rotations. twist, twist_hand: forearm twist joints and the hands (in REFERENCE) whose
     twist they share. before, after: (D, 4) constant rotations for a rest pose that is not the identity, None where it
-    is. hips: joint that takes the root's translation. fitting: None for a body of the reference's own proportions.
+    is. hips: joint that takes the root's translation. eyes: joints
+    that follow the gaze, or None. fitting: None for a body of the reference's own proportions.
     """
 
     skeleton: Skeleton
@@ -73,6 +87,7 @@ class Rig:
     after: Floats | None
     hips: int
     fitting: Fitting | None
+    eyes: _Eyes | None
     springs: SpringSet
 
     @classmethod
@@ -89,13 +104,15 @@ class Rig:
         chains: Sequence[SpringChain] = (),
         colliders: Sequence[SpringCollider] = (),
         size: BodySize | None = None,
+        eyes: EyeBones | None = None,
     ) -> Rig:
         """names, parents (J,) parents first, rest_translation (J, 3) local metres, rest_rotation (J, 4) local; Y up,
         facing +Z, any rest pose.
 
         inverse_bind: (K, 4, 4) of the skin's columns; the rest pose's own where None. skin_joint: (K,) their joints,
         all in order where None. bones: VRM humanoid bone -> joint, by name where None. size: how the body's parts
-        differ from the reference's. Raises BadInput where the arrays do not fit or there are no hips.
+        differ from the reference's. eyes: joints that follow
+        the gaze. Raises BadInput where the arrays do not fit or there are no hips.
         """
         count = len(names)
         turned = np.tile(quat.IDENTITY, (count, 1)) if rest_rotation is None else np.asarray(rest_rotation)
@@ -132,6 +149,7 @@ class Rig:
             after=after,
             hips=index["hips"],
             fitting=fitting,
+            eyes=None if eyes is None else _eyes(skeleton, eyes, world),
             springs=build_springs(skeleton, tuple(chains), tuple(colliders)),
         )
 
@@ -159,6 +177,8 @@ class Rig:
         if self.before is not None and self.after is not None:
             taken = bl.multiply(bl.multiply(np.broadcast_to(self.before, taken.shape), taken), self.after)
         rotation[:, self.driven] = taken
+        if self.eyes is not None:
+            rotation[:, self.eyes.joints] = self.eyes.rotations(pose.gaze)
         if self.twist.size:
             rotation[:, self.twist] = _half_twist(pose.rotation.take(self.twist_hand, axis=1))
         return rotation
@@ -193,6 +213,45 @@ class Rig:
         model = self.joint_matrices(pose)
         state = advance_springs(self.springs, state, model, dt_s)
         return state, self.skin_matrices(model)
+
+
+@dataclass(frozen=True, eq=False)
+class _Eyes:
+    """joints: left, right; yaw_rad: (2, 2) per eye at gaze −1 (to the right) and +1; pitch_rad: (2,) at −1 (down) and
+    +1; before, after: (2, 4) as in Rig."""
+
+    joints: NDArray[np.intp]
+    yaw_rad: Floats
+    pitch_rad: Floats
+    before: Floats
+    after: Floats
+
+    def rotations(self, gaze: Floats) -> Floats:
+        """gaze: (n, 2) -> (n, 2, 4) local rotations of both eyes."""
+        x, y = np.clip(gaze[:, :1], -1.0, 1.0), np.clip(gaze[:, 1:], -1.0, 1.0)
+        half = np.stack(
+            [
+                0.5 * x * np.where(x < 0.0, self.yaw_rad[:, 0], self.yaw_rad[:, 1]),
+                np.broadcast_to(-0.5 * y * np.where(y < 0.0, *self.pitch_rad), (len(gaze), 2)),
+            ]
+        ).astype(np.float32)
+        turn, nod = np.zeros((2, len(gaze), 2, 4), dtype=np.float32)
+        turn[..., 1], nod[..., 0] = np.sin(half)
+        turn[..., 3], nod[..., 3] = np.cos(half)
+        return bl.multiply(bl.multiply(self.before, bl.multiply(turn, nod)), self.after)
+
+
+def _eyes(skeleton: Skeleton, eyes: EyeBones, world: Floats) -> _Eyes:
+    joints = np.array([eyes.left, eyes.right], dtype=np.intp)
+    parents = skeleton.parents[joints]
+    above = np.where((parents < 0)[:, None], quat.IDENTITY, world[np.maximum(parents, 0)])
+    return _Eyes(
+        joints=joints,
+        yaw_rad=np.deg2rad([[eyes.inner_deg, eyes.outer_deg], [eyes.outer_deg, eyes.inner_deg]]),
+        pitch_rad=np.deg2rad([eyes.down_deg, eyes.up_deg]),
+        before=quat.conjugate(above).astype(np.float32),
+        after=world[joints].astype(np.float32),
+    )
 
 
 def _folds(index: Mapping[str, int]) -> tuple[tuple[int, int, int], ...]:

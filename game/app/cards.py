@@ -48,7 +48,7 @@ class Cards:
         for _ in range(SETTLE_TICKS):
             world = step(stall.assets, world)
             assert world.body.pose is not None
-            show.tick(world.body.pose, TICK_S)
+            show.tick(world.body.pose, TICK_S, world.body)
         assert world.body.face_params is not None
         # A renderer of its own: the one that draws the game keeps its baked picture.
         renderer = Renderer(self.device, stage.model, stage.stall, stage.backdrop, level=level)

@@ -4,6 +4,7 @@ examples:
   run_game.py film --emotion anger=0.9 --seconds 10 --every 0.5 --strip --out strip.png
   run_game.py film --emotion joy=0.8 --say "This one here? Oh, it is big!" --seconds 6 --every 0.0333 --out frames
   run_game.py film --figure6 --seed 6 --out fig6.png     the paper's rows: gestures only, success, failure
+  run_game.py film --avatar somebody.vrm --emotion joy=0.8 --seconds 6 --strip --out them.png
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from game.app.bazaar import Bazaar, load_bazaar
 from game.app.content import load_talk_assets, stall_path
@@ -17,6 +18,9 @@ from game.app.wishes import PLAIN_WISH, WishText, load_wishes
 from game.core.errors import BadInput, GameError
 from game.core.paths import ASSETS
 from game.story import Script
+
+if TYPE_CHECKING:
+    from game.app.avatar import Avatar
 
 __all__ = ["Market", "Stall", "StallLoader", "has_pictures", "read_stage", "read_stall"]
 
@@ -38,13 +42,15 @@ class Stall:
 
 @dataclass
 class Market:
-    """All stalls, in the map's order. ``left_out``: id -> one line that says why a stall does not open."""
+    """All stalls, in the map's order. ``left_out``: id -> one line that says why a stall does not open. ``avatar``: a
+    foreign one in every shopkeeper's place."""
 
     bazaar: Bazaar
     stalls: dict[str, Stall] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
     expected: tuple[str, ...] = ()
     wishes: Mapping[tuple[str, str], WishText] = field(default_factory=load_wishes)
+    avatar: Avatar | None = None
 
     @staticmethod
     def single(assets: StepAssets, stage: StageAssets | None = None) -> Market:
@@ -91,11 +97,11 @@ def read_stall(name: str, base: StepAssets, *, stand_in: bool = False) -> Stall:
     return Stall(stall, replace(base, talk=talk), stand_in=not pictured)
 
 
-def read_stage(stall: Stall) -> StageAssets:
-    """What is seen of a stall. Raises BadInput with file and place."""
+def read_stage(stall: Stall, avatar: Avatar | None = None) -> StageAssets:
+    """What is seen of a stall, with an avatar in the shopkeeper's place. Raises BadInput with file and place."""
     if stall.stand_in:
-        return load_stage()
-    return load_stage(stall.script.person.id, stall.id)
+        return load_stage(avatar=avatar)
+    return load_stage(stall.script.person.id, stall.id, avatar=avatar)
 
 
 @dataclass(frozen=True)
@@ -130,7 +136,7 @@ class StallLoader:
         self._scripts_read.set()
         for stall in found:
             try:
-                self._ready.put(_News(stall.id, stage=read_stage(stall)))
+                self._ready.put(_News(stall.id, stage=read_stage(stall, self._market.avatar)))
             except (GameError, OSError) as error:
                 self._ready.put(_News(stall.id, why=str(error)))
 

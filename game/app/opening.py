@@ -7,6 +7,7 @@ import os
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from game.app.afternoon import Afternoon
 from game.app.bazaar import load_bazaar
@@ -20,15 +21,19 @@ from game.app.strings import load_strings
 from game.app.world import leave_talk
 from game.core.errors import BadInput
 
+if TYPE_CHECKING:
+    from game.app.avatar import Avatar
+
 __all__ = ["open_session", "resume_game", "take_up"]
 
 AUTOSAVE = "autosave.json"
 
 
-def open_session(args: argparse.Namespace) -> Session:
+def open_session(args: argparse.Namespace, avatar: Avatar | None = None) -> Session:
     """Settings, assets and world; the saved game is taken up once every stall's dialogue has been read.
 
-    ``args.stall`` None opens the whole market; a name or a dialogue file opens that stall alone.
+    ``args.stall`` None opens the whole market; a name or a dialogue file opens that stall alone. avatar: who stands
+    in for every shopkeeper.
     """
     settings, message = load_settings()
     if args.language:
@@ -40,7 +45,7 @@ def open_session(args: argparse.Namespace) -> Session:
     stall = Stall("", assets) if args.stall is None else read_stall(first, assets, stand_in=True)
     stall.id = assets.talk.script.stall
     others = () if args.stall else bazaar.stalls[1:]
-    market = Market(bazaar, {stall.id: stall}, expected=(stall.id, *others))
+    market = Market(bazaar, {stall.id: stall}, expected=(stall.id, *others), avatar=avatar)
     seed = args.seed if args.seed is not None else int(time.time()) & 0x7FFFFFFF
     world = leave_talk(
         replace(new_world(assets, seed, language=settings.language, text_speed=settings.text_speed), mode=args.mode)

@@ -2,6 +2,7 @@
 
 examples:
   run_game.py
+  run_game.py play --avatar somebody.vrm
   run_game.py play --language ja --seed 7
   run_game.py play --mode gestures --size 1600x900
   run_game.py play --stall flea --at deal_fair --item vase
@@ -41,6 +42,9 @@ __all__ = ["Window", "add_arguments", "need_display", "open_session", "run"]
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``play``."""
+    from game.app.arguments import add_avatar
+
+    add_avatar(parser)
     parser.add_argument("--seed", type=int, default=None, help="seed of the afternoon (default: from the clock)")
     parser.add_argument("--language", choices=["en", "ja"], help="language (kept in the settings otherwise)")
     parser.add_argument("--stall", help="only this stall: its name or a dialogue file (default: the whole market)")
@@ -67,11 +71,14 @@ def _choose_level(window: Window, settings: Settings) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Open the window and play until it is closed."""
+    from game.app.arguments import avatar_of
+
     # What is loaded stays: collecting garbage among it would only cost time, now and at every later collection.
     gc.disable()
     try:
+        avatar = avatar_of(args)
         need_display()
-        session = open_session(args)
+        session = open_session(args, avatar)
         screen = _warped(session, args)
         width, height = args.size
         device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)

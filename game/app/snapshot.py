@@ -3,6 +3,7 @@
 examples:
   run_game.py snapshot --emotion joy=0.8,fear=0.1 --seconds 3 --size 1280x720 --out joy.png
   run_game.py snapshot --emotion anger=0.9 --shown joy=0.5 --overlay --out mask.png
+  run_game.py snapshot --avatar somebody.vrm --emotion fear=0.8 --out them.png
 """
 
 from __future__ import annotations

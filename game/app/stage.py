@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import radians, tan
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +15,15 @@ from game.animation import Pose, Rig, SpringState
 from game.app.rig import load_rig
 from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
-from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceStyle, read_style, tessellate
+from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceSignal, FaceStyle, read_style, tessellate
 from game.formats import load_yaml
 from game.render import DESIGN_SHARE, HERO, Camera, CharacterModel, CrowdView, FrameView, Hud, StaticMesh
 from game.render.assets import load_character, load_picture, load_stall
+from game.render.avatar_model import AvatarLook, AvatarModel
+
+if TYPE_CHECKING:
+    from game.app.avatar import Avatar
+    from game.app.world import Body
 
 __all__ = ["Puppet", "StageAssets", "StageShow", "load_stage"]
 
@@ -31,16 +37,17 @@ class StageAssets:
     """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8.
 
     carries: item -> the item that stands on it. face: how the person's face is drawn. lift_m: how much higher the
-    person's head is than the reference's.
+    person's head is than the reference's. avatar: the foreign one in the shopkeeper's place, if any.
     """
 
-    model: CharacterModel
+    model: CharacterModel | AvatarModel
     rig: Rig
     stall: StaticMesh
     backdrop: NDArray[np.uint8]
     carries: Mapping[str, str]
     face: FaceStyle = DEFAULT_STYLE
     lift_m: float = 0.0
+    avatar: Avatar | None = None
 
     def gone(self, sold: frozenset[str]) -> frozenset[str]:
         """The stall's groups that are no longer there; what still carries something waits for it to go first."""
@@ -57,21 +64,32 @@ class StageAssets:
 
 
 def load_stage(
-    person: str = "mira", stall: str = "flea", folder: Path = ASSETS, models: Path | None = None
+    person: str = "mira",
+    stall: str = "flea",
+    folder: Path = ASSETS,
+    models: Path | None = None,
+    avatar: Avatar | None = None,
 ) -> StageAssets:
-    """Read a person and a stall. models: where the person's model lies, if not in ``folder``/characters.
+    """Read a person and a stall. models: where the person's model lies, if not in ``folder``/characters; avatar:
+    stands in the person's place.
 
     Raises BadInput with file and JSON pointer, or line and column of the person's YAML.
     """
     characters, stalls = folder / "characters", folder / "stalls"
-    vrm = (models or characters) / f"{person}.vrm"
-    rig = load_rig(vrm)
-    head = rig.skeleton.rest_model[rig.driven[rig.source == _HEAD], 1, 3]
+    model: CharacterModel | AvatarModel
+    if avatar is not None:
+        model, rig, lift_m = avatar.model, avatar.rig, avatar.lift_m
+    else:
+        vrm = (models or characters) / f"{person}.vrm"
+        model, rig = load_character(vrm), load_rig(vrm)
+        head = rig.skeleton.rest_model[rig.driven[rig.source == _HEAD], 1, 3]
+        lift_m = float(head[0] - REFERENCE.rest_model[_HEAD, 1, 3]) if len(head) else 0.0
     return StageAssets(
-        model=load_character(vrm),
+        model=model,
         rig=rig,
         face=_style(characters / f"{person}.yaml"),
-        lift_m=float(head[0] - REFERENCE.rest_model[_HEAD, 1, 3]) if len(head) else 0.0,
+        lift_m=lift_m,
+        avatar=avatar,
         stall=load_stall(stalls / f"{stall}.glb"),
         backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
         carries=_carries(stalls / f"{stall}.yaml"),
@@ -125,9 +143,16 @@ class StageShow:
     puppet: Puppet | None = None
     _face: DrawList | None = None
     _params: FaceParams | None = None
+    _looks: tuple[AvatarLook, AvatarLook] | None = None
 
-    def tick(self, pose: Pose, dt_s: float) -> None:
-        """Follow the world by one tick."""
+    def tick(self, pose: Pose, dt_s: float, body: Body | None = None) -> None:
+        """Follow the world by one tick; body: of that world, for an avatar's face."""
+        avatar = self.assets.avatar
+        moment = None if avatar is None or body is None else _Moment.of(body)
+        if avatar is not None and moment is not None:
+            look, gaze = avatar.look(moment.signal, moment.params, moment.visemes)
+            self._looks = (look if self._looks is None else self._looks[1], look)
+            pose = replace(pose, gaze=pose.gaze * np.float32(gaze))
         if self.puppet is None:
             self.puppet = Puppet.of(self.assets.rig, pose)
         else:
@@ -147,13 +172,15 @@ class StageShow:
         hud: Callable[[Hud], None] | None = None,
     ) -> FrameView:
         """The frame as the renderer wants it."""
-        if self._face is None or self._params is None or np.abs(params - self._params).max() > 1e-3:
-            self._face, self._params = tessellate(params, self.assets.face), params.copy()
         assert self.puppet is not None, "tick comes before frame"
+        stale = self._face is None or self._params is None or np.abs(params - self._params).max() > 1e-3
+        if stale and self.assets.avatar is None:
+            self._face, self._params = tessellate(params, self.assets.face), params.copy()
         return FrameView(
             skin_matrices=self.puppet.matrices(share),
             camera=self.assets.framed(camera),
             face=self._face,
+            look=self._look(share, show_face),
             show_face=show_face,
             hidden_items=hidden_items,
             time_s=time_s,
@@ -161,3 +188,28 @@ class StageShow:
             crowd=crowd,
             hud=hud,
         )
+
+    def _look(self, share: float, show_face: bool) -> AvatarLook | None:
+        """The avatar's expression at a share between the last two ticks; none at all where faces are hidden."""
+        if self._looks is None:
+            return None
+        before, after = self._looks
+        if not show_face:
+            return replace(after, morph=np.zeros_like(after.morph), colours={}, shifts={})
+        return replace(after, morph=before.morph + (after.morph - before.morph) * np.float32(share))
+
+
+@dataclass(frozen=True)
+class _Moment:
+    """What drives an avatar's face in one tick: what reached the painted face, its numbers (K,), visemes (6,)."""
+
+    signal: FaceSignal
+    params: FaceParams
+    visemes: NDArray[np.float64]
+
+    @staticmethod
+    def of(body: Body) -> _Moment | None:
+        """Of a world's body; None before its first tick."""
+        if body.face_signal is None or body.face_params is None or body.face is None:
+            return None
+        return _Moment(body.face_signal, body.face_params, body.face.visemes)

@@ -241,7 +241,7 @@ def face_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         expression=named,
     )
     state, params = advance_face(assets.face, world.body.face, signal, TICK_S)
-    return replace(world, body=replace(world.body, face=state, face_params=params))
+    return replace(world, body=replace(world.body, face=state, face_params=params, face_signal=signal))
 
 
 STAGES = (story_stage, speech_stage, feeling_stage, planner_stage, performer_stage, face_stage)

@@ -47,9 +47,10 @@ WARM_UP_S = 1.5
 
 def add_studio_arguments(parser: argparse.ArgumentParser) -> None:
     """What ``snapshot`` and ``film`` share."""
-    from game.app.arguments import add_emotion, known, parse_day_share
+    from game.app.arguments import add_avatar, add_emotion, known, parse_day_share
 
     add_emotion(parser)
+    add_avatar(parser)
     parser.add_argument("--shown", default=None, metavar="NAME=X,…", help="what the face shows, if not what is felt")
     parser.add_argument("--mode", choices=["full", "gestures", "body", "face"], default="full", help="what is acted")
     parser.add_argument("--say", default="", metavar="TEXT", help="a line to speak: its words call up gestures")
@@ -70,8 +71,10 @@ class Studio:
     """One shopkeeper with a fixed feeling in front of a headless renderer."""
 
     def __init__(self, args: argparse.Namespace, size: tuple[int, int], camera: str) -> None:
+        from game.app.arguments import avatar_of
         from game.core.emotion_space import parse_emotion
 
+        stage = load_stage(args.person, args.stall, avatar=avatar_of(args))
         assets = load_step_assets()
         self.session = Session(
             assets,
@@ -92,7 +95,6 @@ class Studio:
         self.day_share = DESIGN_SHARE if args.time_of_day is None else float(args.time_of_day)
         self.camera = CAMERAS[args.camera or camera]
         self.device = Device.headless(*size)
-        stage = load_stage(args.person, args.stall)
         self.renderer = Renderer(
             self.device,
             stage.model,
@@ -125,8 +127,9 @@ class Studio:
     def tick(self, intent: Intent) -> None:
         """One step of the world, followed by what is seen."""
         self.session.world = step(self.session.assets, self.session.world, intent)
-        assert self.session.world.body.pose is not None
-        self.show.tick(self.session.world.body.pose, TICK_S)
+        body = self.session.world.body
+        assert body.pose is not None
+        self.show.tick(body.pose, TICK_S, body)
         if self.crowd is not None:
             self.crowd.tick(self.session.world)
 

@@ -107,7 +107,7 @@ class Window:
     def _stage_here(self) -> StageAssets:
         stall = self.session.market.stalls[self.session.stall]
         if stall.stage is None:
-            stall.stage = read_stage(stall)
+            stall.stage = read_stage(stall, self.session.market.avatar)
         return stall.stage
 
     def _follow(self) -> None:
@@ -133,7 +133,7 @@ class Window:
             session.world = replace(session.world, timers=wanted)
         session.world = step(session.assets, session.world, intent)
         assert session.world.body.pose is not None
-        self.show.tick(session.world.body.pose, TICK_S)
+        self.show.tick(session.world.body.pose, TICK_S, session.world.body)
         if self.crowd is not None and self.renderer.level.people:
             self.crowd.tick(session.world)
         if intent.choice is not None:

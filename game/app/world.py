@@ -13,7 +13,7 @@ from game.core.emotion_space import EMOTIONS, with_neutral
 from game.embos import Decisions, GestureCues, PlannerSignal, PlannerState
 from game.emotion import shown_emotion
 from game.emotion.rules import label_index
-from game.face import VisemeTrack
+from game.face import FaceSignal, VisemeTrack
 from game.story import Spoken, TimedText
 
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ class Body:
     pose: Pose | None = None
     face: FaceState | None = None
     face_params: FaceParams | None = None
+    face_signal: FaceSignal | None = None
     signal: PlannerSignal | None = None
 
 

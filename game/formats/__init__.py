@@ -1,5 +1,6 @@
 """Files of the outside world, each reader bounded in size, depth and time: strict YAML, BVH, glTF, VRM and VRMA."""
 
+from game.formats.avatar_geometry import AvatarGeometry, Morph, join_meshes
 from game.formats.bvh import BvhFile, estimate_scale, read_bvh, to_metres, write_bvh
 from game.formats.gltf import read_gltf
 from game.formats.gltf_model import (
@@ -14,11 +15,28 @@ from game.formats.gltf_model import (
     GltfSkin,
 )
 from game.formats.gltf_skeleton import GltfSkeleton, animation_clip, skeleton_of
+from game.formats.joint_map import MAPS, JointMap, detect_map, find_map, load_map, map_from_names
+from game.formats.json_shape import Report
+from game.formats.toon_material import ToonMaterial, ToonTexture, toon_materials
 from game.formats.vrm import build_vrm, build_vrma, read_vrm, read_vrma
-from game.formats.vrm_model import SpringChain, SpringCollider, SpringJoint, Vrm, VrmAnimation, VrmExpression, VrmLookAt
+from game.formats.vrm_model import (
+    HUMAN_BONES,
+    REQUIRED_BONES,
+    SpringChain,
+    SpringCollider,
+    SpringJoint,
+    Vrm,
+    VrmAnimation,
+    VrmExpression,
+    VrmLookAt,
+)
 from game.formats.yaml_source import Node, load_yaml, nearest, parse_yaml
 
 __all__ = [
+    "HUMAN_BONES",
+    "MAPS",
+    "REQUIRED_BONES",
+    "AvatarGeometry",
     "BvhFile",
     "GltfAnimation",
     "GltfChannel",
@@ -30,10 +48,15 @@ __all__ = [
     "GltfPrimitive",
     "GltfSkeleton",
     "GltfSkin",
+    "JointMap",
+    "Morph",
     "Node",
+    "Report",
     "SpringChain",
     "SpringCollider",
     "SpringJoint",
+    "ToonMaterial",
+    "ToonTexture",
     "Vrm",
     "VrmAnimation",
     "VrmExpression",
@@ -41,8 +64,13 @@ __all__ = [
     "animation_clip",
     "build_vrm",
     "build_vrma",
+    "detect_map",
     "estimate_scale",
+    "find_map",
+    "join_meshes",
+    "load_map",
     "load_yaml",
+    "map_from_names",
     "nearest",
     "parse_yaml",
     "read_bvh",
@@ -51,5 +79,6 @@ __all__ = [
     "read_vrma",
     "skeleton_of",
     "to_metres",
+    "toon_materials",
     "write_bvh",
 ]

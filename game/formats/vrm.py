@@ -26,6 +26,14 @@ from game.formats.vrm_model import (
 )
 from game.formats.vrm_shape import VRM0, VRMA, VRMC_SPRING, VRMC_VRM
 
+_COLOURS = {
+    "color": "lit",
+    "shadeColor": "shade",
+    "emissionColor": "emissive",
+    "rimColor": "rim",
+    "outlineColor": "outline",
+}
+
 __all__ = ["build_vrm", "build_vrma", "read_vrm", "read_vrma"]
 
 
@@ -168,7 +176,15 @@ def _expression(file: GltfFile, name: str, item: Mapping[str, Any], group: str, 
         name,
         group == "preset",
         tuple(morphs),
-        len(item.get("materialColorBinds", [])) + len(item.get("textureTransformBinds", [])),
+        tuple(
+            (bind["material"], _COLOURS[bind["type"]], tuple(float(v) for v in bind["targetValue"]))
+            for bind in item.get("materialColorBinds", [])
+            if bind.get("type") in _COLOURS and len(bind.get("targetValue", ())) == 4
+        ),
+        tuple(
+            (bind["material"], _pair(bind.get("scale"), 1.0), _pair(bind.get("offset"), 0.0))
+            for bind in item.get("textureTransformBinds", [])
+        ),
         item.get("isBinary", False),
         item.get("overrideBlink", "none"),
         item.get("overrideLookAt", "none"),
@@ -228,6 +244,10 @@ def _check_chain(file: GltfFile, joints: tuple[SpringJoint, ...], index: int, re
         if node < 0:
             pointer = ("extensions", "VRMC_springBone", "springs", index, "joints", at, "node")
             report.refuse(pointer, expected="a descendant of the joint before it", seen=joints[at].node)
+
+
+def _pair(value: Any, default: float) -> tuple[float, float]:
+    return (default, default) if value is None else (float(value[0]), float(value[1]))
 
 
 def _vector(value: Any, default: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> tuple[float, float, float]:

@@ -47,6 +47,13 @@ _FIRST_PERSON = {
     "ThirdPersonOnly": "thirdPersonOnly",
     "FirstPersonOnly": "firstPersonOnly",
 }
+_COLOURS = {
+    "_Color": "lit",
+    "_ShadeColor": "shade",
+    "_EmissionColor": "emissive",
+    "_RimColor": "rim",
+    "_OutlineColor": "outline",
+}
 _PERSONAL = ("title", "author", "version", "contactInformation", "reference", "texture")
 
 
@@ -115,10 +122,33 @@ def _expressions(file: GltfFile, source: Mapping[str, Any], report: Report) -> d
                 (*_ROOT, "blendShapeMaster", "blendShapeGroups", at), f"a second expression {name[:40]!r}, ignored"
             )
             continue
+        colours, shifts = _material_changes(file, group)
         expressions[name] = VrmExpression(
-            name, known, tuple(morphs), len(group.get("materialValues", [])), group.get("isBinary", False)
+            name, known, tuple(morphs), colours, shifts, is_binary=group.get("isBinary", False)
         )
     return expressions
+
+
+def _material_changes(
+    file: GltfFile, group: Mapping[str, Any]
+) -> tuple[
+    tuple[tuple[int, str, tuple[float, ...]], ...], tuple[tuple[int, tuple[float, float], tuple[float, float]], ...]
+]:
+    """Colours (sRGB in 0.x) and texture places that an expression changes, by name of material and property."""
+    index = {material.name: at for at, material in reversed(list(enumerate(file.materials)))}
+    colours, shifts = [], []
+    for bind in group.get("materialValues", []):
+        material = index.get(bind.get("materialName", ""))
+        name, value = bind.get("propertyName", ""), [float(v) for v in bind.get("targetValue", [])]
+        if material is None or len(value) != 4:
+            continue
+        if name in _COLOURS:
+            linear = (max(v, 0.0) ** 2.2 for v in value[:3])
+            colours.append((material, _COLOURS[name], (*linear, value[3])))
+        elif name == "_MainTex_ST":
+            sx, sy, ox, oy = value
+            shifts.append((material, (sx, sy), (ox, 1.0 - oy - sy)))
+    return tuple(colours), tuple(shifts)
 
 
 def _look_at(source: Mapping[str, Any]) -> VrmLookAt | None:

@@ -45,12 +45,14 @@ REQUIRED_BONES: tuple[str, ...] = (
 
 @dataclass(frozen=True)
 class VrmExpression:
-    """morphs: (mesh, target, weight 0..1). material_binds: how many material changes it also makes (not read)."""
+    """morphs: (mesh, target, weight 0..1). colours: (material, what: "lit", "shade", "emissive", "rim" or "outline",
+    linear RGBA it turns to); shifts: (material, scale, offset) of its texture coordinates."""
 
     name: str
     preset: bool
     morphs: tuple[tuple[int, int, float], ...]
-    material_binds: int = 0
+    colours: tuple[tuple[int, str, tuple[float, ...]], ...] = ()
+    shifts: tuple[tuple[int, tuple[float, float], tuple[float, float]], ...] = ()
     is_binary: bool = False
     override_blink: str = "none"
     override_look_at: str = "none"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from game.formats.json_shape import Anything, Fields, Flag, Index, Items, Number, Shape, Table, Text
+from game.formats.json_shape import Fields, Flag, Index, Items, Number, Shape, Table, Text
 
 __all__ = ["VRM0", "VRMA", "VRMC_SPRING", "VRMC_VRM"]
 
@@ -28,8 +28,17 @@ _EXPRESSION = Fields(
                 {"node": _NODE, "index": Number(0, 1e6, integer=True), "weight": _NUMBER}, ("node", "index", "weight")
             )
         ),
-        "materialColorBinds": _list(Fields({"material": Index("materials")}, ("material",))),
-        "textureTransformBinds": _list(Fields({"material": Index("materials")}, ("material",))),
+        "materialColorBinds": _list(
+            Fields(
+                {"material": Index("materials"), "type": Text(), "targetValue": Items(_NUMBER, (3, 4))}, ("material",)
+            )
+        ),
+        "textureTransformBinds": _list(
+            Fields(
+                {"material": Index("materials"), "scale": Items(_NUMBER, (2,)), "offset": Items(_NUMBER, (2,))},
+                ("material",),
+            )
+        ),
         "isBinary": Flag(),
         "overrideBlink": Text(("none", "block", "blend")),
         "overrideLookAt": Text(("none", "block", "blend")),
@@ -164,7 +173,15 @@ VRM0 = Fields(
                                     }
                                 )
                             ),
-                            "materialValues": _list(Anything()),
+                            "materialValues": _list(
+                                Fields(
+                                    {
+                                        "materialName": Text(),
+                                        "propertyName": Text(),
+                                        "targetValue": _list(_NUMBER),
+                                    }
+                                )
+                            ),
                         }
                     )
                 )

@@ -37,7 +37,7 @@ __all__ = [
 
 Floats = NDArray[np.float32]
 KINDS = ("hair", "face", "skin", "cloth", "gloss", "flat")  # also the order of drawing: what covers most comes first
-MAX_JOINTS = 64  # rows of the Joints block in joints.glsl
+MAX_JOINTS = 256  # three rows each of the Joints block in joints.glsl; 16 KB hold 341
 
 
 @dataclass(frozen=True)

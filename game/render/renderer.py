@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.face.mesh import DrawList
+from game.render.avatar_drawing import AvatarDrawing
+from game.render.avatar_model import AvatarModel
 from game.render.character_drawing import CharacterDrawing
 from game.render.crowd import CrowdLook
 from game.render.crowd_drawing import CrowdDrawing
@@ -28,6 +30,8 @@ from game.render.text import FontSet
 from game.render.view import FrameView
 
 __all__ = ["Renderer"]
+
+_Drawing = CharacterDrawing | AvatarDrawing
 
 _FACE_AT = (0.0, 1.2, 0.1)  # about where the face is, m
 
@@ -54,7 +58,7 @@ class Renderer(Owner):
     def __init__(
         self,
         device: Device,
-        model: CharacterModel | None,
+        model: CharacterModel | AvatarModel | None,
         stall: StaticMesh | None = None,
         backdrop: NDArray[np.uint8] | None = None,
         level: Level = DEFAULT,
@@ -71,7 +75,7 @@ class Renderer(Owner):
         self._hidden_face = hidden_face()
         self._face: DrawList | None = None
         self._canvas: _Canvas | None = None
-        self._character: CharacterDrawing | None = None
+        self._character: _Drawing | None = None
         self._painter: FacePainter | None = None
         self._moving: MovingDrawing | None = None
         self._crowd: CrowdDrawing | None = None
@@ -85,7 +89,10 @@ class Renderer(Owner):
         self.set_level(level)
 
     def set_stage(
-        self, model: CharacterModel | None, stall: StaticMesh | None, backdrop: NDArray[np.uint8] | None
+        self,
+        model: CharacterModel | AvatarModel | None,
+        stall: StaticMesh | None,
+        backdrop: NDArray[np.uint8] | None,
     ) -> None:
         """Draw another person at another stall from the next frame on; interface and fonts stay."""
         self._drop_level()
@@ -100,7 +107,10 @@ class Renderer(Owner):
         """Change the quality; the next frame uses it."""
         self._drop_level()
         self.level = level
-        if self._model is not None:
+        if isinstance(self._model, AvatarModel):
+            self._character = AvatarDrawing(self.device, self._model, level)
+            self._painter = FacePainter(self.device, level.face_size)
+        elif self._model is not None:
             self._character = CharacterDrawing(self.device, self._model, level)
             self._painter = FacePainter(self.device, level.face_size)
         if self._moving_meshes:
@@ -220,12 +230,12 @@ class Renderer(Owner):
         elif self._face is not None:
             painter.paint(self._face)
 
-    def _draw_character(
-        self, view: FrameView, character: CharacterDrawing, painter: FacePainter, targets: FrameTargets
-    ) -> Box:
+    def _draw_character(self, view: FrameView, character: _Drawing, painter: FacePainter, targets: FrameTargets) -> Box:
         level = self.level
         light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
         world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, level.line_px)
+        if isinstance(character, AvatarDrawing) and view.look is not None:
+            character.look(view.look)
         box = character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall)
         if self._frames % level.shadow_every == 0 or self._light is not light:
             character.cast()
@@ -236,7 +246,7 @@ class Renderer(Owner):
         character.draw_over(painter.over)
         return _with_shadow(box, targets.size)
 
-    def _draw_shadow_on_table(self, view: FrameView, character: CharacterDrawing, targets: FrameTargets) -> None:
+    def _draw_shadow_on_table(self, view: FrameView, character: _Drawing, targets: FrameTargets) -> None:
         context = self.device.context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = PREMULTIPLIED

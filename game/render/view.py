@@ -14,6 +14,7 @@ from game.render.camera import HERO, Camera
 from game.render.daylight import DESIGN_SHARE
 
 if TYPE_CHECKING:
+    from game.render.avatar_model import AvatarLook
     from game.render.crowd import CrowdView
     from game.render.hud import Hud
 
@@ -26,6 +27,7 @@ class FrameView:
 
     skin_matrices (j, 4, 4): joint world matrix times inverse bind matrix, in the order of the model's joints.
     face: the expression's draw list, or None for the one shown last (the same object again costs nothing).
+    look: the expression of a foreign avatar, which has no painted face.
     show_face False draws a blank face with two guide lines. show_stall False draws the person alone in a studio.
     hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
     crowd: passers-by behind the stall, as many as the renderer was given looks for.
@@ -35,6 +37,7 @@ class FrameView:
     skin_matrices: NDArray[np.float32]
     camera: Camera = HERO
     face: DrawList | None = None
+    look: AvatarLook | None = None
     show_face: bool = True
     show_stall: bool = True
     hidden_items: frozenset[str] = frozenset()

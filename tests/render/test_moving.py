@@ -64,8 +64,8 @@ def test_a_spin_goes_round_once_a_period() -> None:
 
 
 def test_more_things_than_joints_become_several_meshes() -> None:
-    meshes = moving_meshes(things(150, Motion((1.0, 0.0, 0.0), 0.1, 2.0)))
-    assert [len(moving.pivot) for moving in meshes] == [64, 64, 22]
+    meshes = moving_meshes(things(600, Motion((1.0, 0.0, 0.0), 0.1, 2.0)))
+    assert [len(moving.pivot) for moving in meshes] == [256, 256, 88]
 
 
 @pytest.mark.parametrize(

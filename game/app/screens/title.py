@@ -58,6 +58,11 @@ class TitleScreen(MenuScreen):
             [Button(name, s(name), Rect(left, 334 + i * 60, width, 50), size=20) for i, name in enumerate(entries)]
         )
         self._buttons.draw(canvas)
+        if session.market.avatar is not None:
+            line = s("avatar_line", line=session.market.avatar.licence)
+            canvas.text(
+                canvas.width - 24, canvas.height - 26, line, 12, fade(PALETTE["paper_warm"], 0.9), align="right"
+            )
         if session.message:
             canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import FINGERS, REFERENCE
-from game.tools.retarget.joint_map import SIDES
+from game.formats.joint_map import SIDES
 from game.tools.retarget.source import UP, Source, unit
 
 __all__ = ["Correction", "corrections", "stands_in_zero_pose", "target_bone"]

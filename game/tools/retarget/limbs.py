@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from game.animation import collision
 from game.core import quaternion as quat
 from game.core.humanoid import FINGERS, REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
-from game.tools.retarget.joint_map import SIDES
+from game.formats.joint_map import SIDES
 from game.tools.retarget.source import unit
 
 __all__ = ["bend_to", "clear_hands", "soft_reach"]

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from game.core import quaternion as quat
 from game.core.clip import Clip
 from game.core.humanoid import FINGERS, HEAD_CENTRE_OFFSET, REFERENCE
+from game.formats.joint_map import SIDES, JointMap, detect_map, map_from_names
 from game.tools.retarget.calibrate import corrections, stands_in_zero_pose
-from game.tools.retarget.joint_map import SIDES, JointMap, detect_map, map_from_names
 from game.tools.retarget.limbs import bend_to, clear_hands
 from game.tools.retarget.source import Source, read_source, unit
 

@@ -17,7 +17,7 @@ from game.core import quaternion as quat
 from game.core.clip import Clip
 from game.core.errors import BadInput, Where
 from game.core.skeleton import Skeleton
-from game.tools.retarget.joint_map import SIDES, JointMap
+from game.formats.joint_map import SIDES, JointMap
 
 __all__ = ["Source", "read_source", "unit"]
 

@@ -125,8 +125,8 @@ class _Tree:
         return found
 
 
-def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
-    """Find the parts of a human skeleton. Raises BadInput that names what is missing and how to give it."""
+def detect_map(skeleton: Skeleton, path: Path | str = "skeleton", option: str = "--map") -> JointMap:
+    """Find the parts of a human skeleton. Raises BadInput that names what is missing and how to give it (option)."""
     tree = _Tree(skeleton)
     where = Where(path)
     ends: dict[str, int] = {}
@@ -144,7 +144,7 @@ def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
             where=where,
             expected="a person's joints",
             seen=f"no {', no '.join(missing)} among {len(skeleton)} joints",
-            hint="name the joints in a map file: --map",
+            hint=f"name the joints in a map file: {option}",
         )
     hips = tree.meeting(ends["leftfoot"], ends["rightfoot"])
     # The carrier of the arms: where the two arms part.
@@ -160,7 +160,7 @@ def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
             expected="legs that meet at the hips and arms that meet at a trunk joint above them",
             seen=f"legs at {tree.names[hips] if hips >= 0 else 'none'!r}, "
             f"arms at {tree.names[chest] if chest >= 0 else 'none'!r}",
-            hint="name the joints in a map file: --map",
+            hint=f"name the joints in a map file: {option}",
         )
     between = trunk[trunk.index(chest) + 1 : trunk.index(hips)][::-1]
     joints: dict[str, list[int]] = {
@@ -171,8 +171,8 @@ def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
         "head": [ends["head"]],
     }
     for side in SIDES:
-        arm = _limb(tree, ends[side + "hand"], chest, ("hand", "lowerArm", "upperArm"), where)
-        leg = _limb(tree, ends[side + "foot"], hips, ("foot", "lowerLeg", "upperLeg"), where)
+        arm = _limb(tree, ends[side + "hand"], chest, ("hand", "lowerArm", "upperArm"), where, option)
+        leg = _limb(tree, ends[side + "foot"], hips, ("foot", "lowerLeg", "upperLeg"), where, option)
         for target, joint in zip(("Hand", "LowerArm", "UpperArm", "Shoulder"), arm, strict=False):
             joints[side + target] = [joint]
         for target, joint in zip(("Foot", "LowerLeg", "UpperLeg"), leg[:3], strict=True):
@@ -184,7 +184,7 @@ def detect_map(skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:
     return JointMap({t: tuple(tree.names[i] for i in own) for t, own in joints.items() if own or t in _LISTS})
 
 
-def _limb(tree: _Tree, end: int, trunk: int, roles: tuple[str, ...], where: Where) -> list[int]:
+def _limb(tree: _Tree, end: int, trunk: int, roles: tuple[str, ...], where: Where, option: str) -> list[int]:
     """End, lower bone, upper bone and, where there is one, the collar bone or pelvis spacer."""
     chain = tree.path(end)
     chain = chain[: chain.index(trunk)]
@@ -194,7 +194,7 @@ def _limb(tree: _Tree, end: int, trunk: int, roles: tuple[str, ...], where: Wher
             where=where,
             expected="two bones between it and the trunk",
             seen=" < ".join(tree.names[i] for i in chain) or "none",
-            hint="name the joints in a map file: --map",
+            hint=f"name the joints in a map file: {option}",
         )
     # Between them there may be joints that only twist: names decide where they are known, else the order.
     lower = next((i for i in chain[1:-1] if tree.parts[i][1] in _ALIASES[roles[1]]), chain[1])
