@@ -1,7 +1,8 @@
-"""Bring anyone's motion (BVH) onto the project's skeleton, ready to be annotated and analysed.
+"""Bring anyone's motion (BVH, VRMA) onto the project's skeleton, ready to be annotated and analysed.
 
 Examples:
   run_game.py retarget walk.bvh --out my_takes/walk.bvh
+  run_game.py retarget wave.vrma --out my_takes/wave.bvh        a VRM animation knows its own bones
   run_game.py retarget walk.bvh --out walk.bvh --map mixamo     a map shipped in assets/motion/maps
   run_game.py retarget walk.bvh --out walk.bvh --map mine.yaml  joints: {leftUpperArm: L_Arm, spine: [S1, S2], …}
   run_game.py retarget walk.bvh --cut 2.5:9 --out stand.bvh     only these seconds
@@ -21,15 +22,16 @@ from pathlib import Path
 
 from game.core.clip import Clip
 from game.core.errors import BadInput, Where
+from game.formats import JointMap, map_from_bones, read_vrma
 from game.formats.bvh import read_bvh, write_bvh
-from game.tools.retarget import Options, find_map, load_map, retarget
+from game.tools.retarget import FPS, Options, find_map, load_map, retarget
 
 __all__ = ["add_arguments", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The command's grammar."""
-    parser.add_argument("file", type=Path, metavar="FILE.bvh", help="a person's motion")
+    parser.add_argument("file", type=Path, metavar="FILE", help="a person's motion: .bvh or .vrma")
     parser.add_argument("--out", type=Path, metavar="TAKE.bvh", help="where to write it (nothing is written without)")
     parser.add_argument("--map", metavar="MAP", help="a joint map: a YAML file, or the name of a shipped one")
     parser.add_argument("--cut", type=_seconds, metavar="FROM:TO", help="only these seconds of the file")
@@ -59,6 +61,16 @@ def _part(clip: Clip, cut: tuple[float, float] | None, path: Path) -> Clip:
     return replace(clip, rotation=clip.rotation[frames].copy(), translation=clip.translation[frames].copy())
 
 
+def _read(path: Path) -> tuple[Clip, list[str], JointMap | None]:
+    """The motion, what is odd about its file, and which joint is which where the file says so."""
+    if path.suffix.lower() != ".vrma":
+        file = read_bvh(path)
+        return file.clip, file.findings, None
+    made = read_vrma(path, fps=FPS)
+    names = made.clip.skeleton.names
+    return made.clip, made.findings, map_from_bones({b: names[joint] for b, joint in made.bones.items()}, path)
+
+
 def run(args: argparse.Namespace) -> int:
     """0 good; BadInput for a file that is no person's motion."""
     if args.out is not None:
@@ -67,23 +79,24 @@ def run(args: argparse.Namespace) -> int:
         if args.out.exists() and args.file.exists() and args.out.samefile(args.file):
             raise BadInput("--out", where=Where(args.out), expected="another file than the one that is read", seen="it")
     joints = load_map(find_map(args.map)) if args.map else None
-    file = read_bvh(args.file)
+    clip, findings, known = _read(args.file)
+    joints = joints or known
     options = Options(
         table=not (args.no_table or args.no_collide),
         collide=not args.no_collide,
         hand_targets=not args.directions_only,
     )
-    made = retarget(_part(file.clip, args.cut, args.file), joints, options, path=str(args.file))
+    made = retarget(_part(clip, args.cut, args.file), joints, options, path=str(args.file))
     if args.out is not None:
         write_bvh(made.clip, args.out)
     report = made.report
-    notes = [*file.findings, *report.notes]
+    notes = [*findings, *report.notes]
     if args.json:
         result = asdict(report) | {"notes": notes, "out": str(args.out) if args.out else None}
         print(json.dumps(result, ensure_ascii=False))
         return 0
     zero = "a standing zero pose" if report.zero_pose else "axes along the bones"
-    print(f"{args.file}: {len(file.clip.skeleton)} joints ({zero}), {made.clip.length_s:.1f} s, map {report.map_name}")
+    print(f"{args.file}: {len(clip.skeleton)} joints ({zero}), {made.clip.length_s:.1f} s, map {report.map_name}")
     for target, sources in report.joints.items():
         print(f"  {target:24} {' + '.join(sources) or '–'}")
     worst = max(report.limb_error_deg, key=lambda name: report.limb_error_deg[name])

@@ -15,7 +15,7 @@ from game.formats.gltf_model import (
     GltfSkin,
 )
 from game.formats.gltf_skeleton import GltfSkeleton, animation_clip, skeleton_of
-from game.formats.joint_map import MAPS, JointMap, detect_map, find_map, load_map, map_from_names
+from game.formats.joint_map import MAPS, JointMap, detect_map, find_map, load_map, map_from_bones, map_from_names
 from game.formats.json_shape import Report
 from game.formats.toon_material import ToonMaterial, ToonTexture, toon_materials
 from game.formats.vrm import build_vrm, build_vrma, read_vrm, read_vrma
@@ -70,6 +70,7 @@ __all__ = [
     "join_meshes",
     "load_map",
     "load_yaml",
+    "map_from_bones",
     "map_from_names",
     "nearest",
     "parse_yaml",

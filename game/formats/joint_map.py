@@ -18,7 +18,7 @@ from game.core.paths import ASSETS
 from game.core.skeleton import Skeleton
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["MAPS", "JointMap", "detect_map", "find_map", "load_map", "map_from_names"]
+__all__ = ["MAPS", "JointMap", "detect_map", "find_map", "load_map", "map_from_bones", "map_from_names"]
 
 MAPS = ASSETS / "motion" / "maps"
 SIDES = ("left", "right")
@@ -250,6 +250,22 @@ def _sources(node: Node, target: str) -> tuple[str, ...]:
     if target not in _LISTS:
         raise node.error(target, expected="one joint name (only spine and neck may have several)")
     return tuple(item.as_str() for item in node.as_list())
+
+
+def map_from_bones(bones: Mapping[str, str], path: Path | str = "motion") -> JointMap:
+    """The map of a skeleton whose humanoid bones are known (VRM): bone -> joint name. Raises BadInput with what is
+    missing.
+
+    The bone that carries the arms is the chest here: VRM's upperChest, chest or spine, whichever is the highest.
+    """
+    trunk = [bones[bone] for bone in ("spine", "chest", "upperChest") if bone in bones]
+    joints = {bone: (joint,) for bone, joint in bones.items() if bone in REFERENCE.index}
+    joints["spine"], joints["chest"] = tuple(trunk[:-1]), tuple(trunk[-1:])
+    joints["neck"] = (bones["neck"],) if "neck" in bones else ()
+    missing = [target for target in _NEEDED if not joints.get(target)]
+    if missing:
+        raise BadInput("humanoid bones", where=Where(path), expected="a person's", seen=f"no {', '.join(missing)}")
+    return JointMap(joints, "VRM")
 
 
 def map_from_names(joint_map: JointMap, skeleton: Skeleton, path: Path | str = "skeleton") -> JointMap:

@@ -87,6 +87,23 @@ def _off_target_m(made: Retargeted) -> np.ndarray:
     return np.stack(off, axis=-1)
 
 
+def test_every_vrm_animation_becomes_a_take(
+    shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = sorted((shared_data / "vrma").glob("*.vrma"))
+    assert files
+    for path in files:
+        out = tmp_path / f"{path.stem}.bvh"
+        assert main(["retarget", str(path), "--out", str(out), "--json", "--directions-only", "--no-collide"]) == 0
+        report = json.loads(capsys.readouterr().out)
+        assert report["map_name"] == "VRM"
+        clip = read_bvh(out).clip
+        assert set(clip.skeleton.names) == set(REFERENCE.names)
+        # Arms keep their directions; a VRM animation's bones are known without guessing.
+        worst = max(report["limb_error_deg"][name] for name in report["limb_error_deg"] if "Arm" in name)
+        assert worst < 15.0, (path.name, report["limb_error_deg"])
+
+
 def test_nothing_jumps(shared_data: Path) -> None:
     clip = retarget(_clip(shared_data, "motionbuilder")).clip
     position, _ = clip.to_model()
@@ -95,12 +112,13 @@ def test_nothing_jumps(shared_data: Path) -> None:
     assert (np.diff(clip.rotation, axis=0) ** 2).sum(-1).max() < 1.0
 
 
+@pytest.mark.parametrize("name", ["zeroeggs_talk/009_Sad_3_part20__n_204_o_9_20.bvh", "vrma/Relax.vrma"])
 def test_an_annotated_foreign_take_joins_the_analysis(
-    shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    shared_data: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
 ) -> None:
-    source = shared_data / "zeroeggs_talk" / "009_Sad_3_part20__n_204_o_9_20.bvh"
+    source = shared_data / name
     if not source.exists():
-        pytest.skip("the ZeroEGGS cuts are not among the shared files")
+        pytest.skip(f"{name} is not among the shared files")
     motion = tmp_path / "motion"
     shutil.copytree(ASSETS / "motion" / "takes", motion / "takes")
     shutil.copy(ASSETS / "motion" / "behaviours.yaml", motion)
