@@ -69,8 +69,8 @@ def add_avatar(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--avatar-faces", type=Path, metavar="YAML", help="its rated expressions (face fit --avatar)")
 
 
-def avatar_of(args: argparse.Namespace) -> Avatar | None:
-    """The avatar asked for, its licence told in the terminal. Raises BadInput."""
+def avatar_of(args: argparse.Namespace, quiet: bool = False) -> Avatar | None:
+    """The avatar asked for, its licence told in the terminal unless quiet. Raises BadInput."""
     from game.app.avatar import open_avatar
     from game.formats import find_map, load_map
 
@@ -80,6 +80,8 @@ def avatar_of(args: argparse.Namespace) -> Avatar | None:
         return None
     joints = load_map(find_map(args.avatar_map)) if args.avatar_map else None
     avatar = open_avatar(args.avatar, joints, args.avatar_faces)
+    if quiet:
+        return avatar
     print(f"avatar: {avatar.licence}")
     for note in avatar.notes[:MAX_NOTES]:
         print(f"note: {note}")

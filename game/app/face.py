@@ -7,6 +7,7 @@ examples:
   run_game.py face sheet seven --out seven.png
   run_game.py face rate --rater yuki --out ratings.csv
   run_game.py face fit ratings.csv --plots plots --out-parts parts.yaml --out-weights weights.yaml
+  run_game.py face rate --avatar somebody.vrm --rater yuki --out theirs.csv    then: face fit theirs.csv --avatar …
   run_game.py face simulate --raters 32 --out simulated.csv
 
 The window needs the `tools` extra (pip install -e '.[tools]'), plots the `reports` extra.
@@ -18,7 +19,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from game.app.arguments import parse_size
+from game.app.arguments import add_avatar, parse_size
 from game.core.errors import MissingPart
 from game.core.paths import ASSETS
 
@@ -72,6 +73,7 @@ def _rate(parser: argparse.ArgumentParser) -> None:
     _size(parser)
     parser.add_argument("--rater", required=True, metavar="NAME", help="who rates")
     parser.add_argument("--out", type=Path, required=True, metavar="CSV", help="appended to; resumes where it stopped")
+    add_avatar(parser)
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--faces", type=int, metavar="N", help="N whole faces only")
     which.add_argument("--parts", action="store_true", help="only the standard face and those that wear one part")
@@ -83,6 +85,8 @@ def _fit(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("ratings", type=Path, metavar="RATINGS.csv")
     parser.add_argument("--out-parts", type=Path, metavar="YAML", help="write parts with the rated Gaussians")
     parser.add_argument("--out-weights", type=Path, metavar="YAML", help="write the fitted weights")
+    add_avatar(parser)
+    parser.add_argument("--out-faces", type=Path, metavar="YAML", help="an avatar's rated expressions (beside the CSV)")
     parser.add_argument("--plots", type=Path, metavar="DIR", help="draw Gaussians, weights, predicted against rated")
     parser.add_argument("--held-out", type=float, default=0.2, metavar="SHARE", help="of the whole faces (default 0.2)")
     parser.add_argument("--seed", type=int, default=1, help="of the split (default 1)")
@@ -112,6 +116,10 @@ def run(args: argparse.Namespace) -> int:
     if args.face_command in {"fit", "simulate"}:
         from game.tools.face import fit_command
 
+        if getattr(args, "avatar", None) is not None:
+            from game.tools.face.avatar_ratings import fit_avatar
+
+            return fit_avatar(args)
         return fit_command.fit(args) if args.face_command == "fit" else fit_command.simulate(args)
     if args.face_command == "rate":
         from game.tools.face.rate_window import run_rating

@@ -259,7 +259,7 @@ def map_from_bones(bones: Mapping[str, str], path: Path | str = "motion") -> Joi
     The bone that carries the arms is the chest here: VRM's upperChest, chest or spine, whichever is the highest.
     """
     trunk = [bones[bone] for bone in ("spine", "chest", "upperChest") if bone in bones]
-    joints = {bone: (joint,) for bone, joint in bones.items() if bone in REFERENCE.index}
+    joints: dict[str, tuple[str, ...]] = {b: (joint,) for b, joint in bones.items() if b in REFERENCE.index}
     joints["spine"], joints["chest"] = tuple(trunk[:-1]), tuple(trunk[-1:])
     joints["neck"] = (bones["neck"],) if "neck" in bones else ()
     missing = [target for target in _NEEDED if not joints.get(target)]

@@ -117,7 +117,8 @@ def fit_ratings(
         raise BadInput("held-out share", expected="0 to 0.5", seen=held_out)
     by_face: dict[Face, list[Rating]] = defaultdict(list)
     for rating in ratings:
-        by_face[rating.face].append(rating)
+        if isinstance(rating.face, Face):
+            by_face[rating.face].append(rating)
     parts, lacking = _fit_parts(by_face, model, path)
     whole = _whole_faces(by_face, model, parts)
     enough = whole is not None and len(whole) >= FACES_NEEDED

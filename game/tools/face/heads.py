@@ -9,11 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import Pose
+from game.app.avatar import Avatar
 from game.app.stage import StageShow, load_stage
 from game.core import quaternion as quat
 from game.core.humanoid import REFERENCE
-from game.face import FaceParams
+from game.face import FIELDS, FaceParams
 from game.render import Camera, Device, Level, Renderer, level_named
+from game.render.avatar_model import AvatarLook
 
 __all__ = ["BUST", "HeadStudio"]
 
@@ -43,12 +45,19 @@ class HeadStudio:
     that window's pictures. Raises MissingPart without OpenGL.
     """
 
-    def __init__(self, size: int, *, context: moderngl.Context | None = None, level: Level | None = None) -> None:
+    def __init__(
+        self,
+        size: int,
+        *,
+        context: moderngl.Context | None = None,
+        level: Level | None = None,
+        avatar: Avatar | None = None,
+    ) -> None:
         self.size = size
         self._own = context is None
         # A picture narrower than 16:9 keeps the width of its design: BUST's field is as wide as this square is high.
         self.device = Device.headless(size, size) if context is None else Device(context, (size, size), windowed=False)
-        stage = load_stage()
+        stage = load_stage(avatar=avatar)
         self._renderer = Renderer(
             self.device, stage.model, stage.stall, stage.backdrop, level=level or level_named("ultra")
         )
@@ -60,6 +69,12 @@ class HeadStudio:
     def draw(self, params: FaceParams) -> Pixels:
         """(size, size, 3) picture of an expression (K,)."""
         self._renderer.draw(replace(self._show.frame(params, camera=BUST), show_stall=False))
+        return self._renderer.read_pixels()
+
+    def draw_look(self, look: AvatarLook) -> Pixels:
+        """(size, size, 3) picture of an avatar's expression."""
+        view = self._show.frame(np.zeros(len(FIELDS)), camera=BUST)
+        self._renderer.draw(replace(view, look=look, show_stall=False))
         return self._renderer.read_pixels()
 
     def close(self) -> None:

@@ -5,17 +5,20 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import moderngl
 import numpy as np
 import pygame
 
+from game.app.arguments import avatar_of
+from game.app.avatar import Avatar
 from game.app.play import need_display
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
-from game.core import EMOTIONS
+from game.core import EMOTIONS, BadInput
 from game.face import Face, FaceAsset, Parts, load_face
 from game.render import Device, FontSet, Hud, level_named
+from game.tools.face.avatar_ratings import expressions_to_rate, look_of
 from game.tools.face.heads import HeadStudio
 from game.tools.face.pad import Pad
 from game.tools.face.ratings_file import RatingLog
@@ -168,12 +171,12 @@ def _now() -> str:
 class _RateWindow:
     """The pygame window: events in, one picture out, only when something has changed."""
 
-    def __init__(self, device: Device, asset: FaceAsset, screen: RateScreen) -> None:
-        self.device, self.screen, self._asset = device, screen, asset
-        self._studio = HeadStudio(HEAD, context=device.context, level=level_named("high"))
+    def __init__(self, device: Device, asset: FaceAsset, screen: RateScreen, avatar: Avatar | None = None) -> None:
+        self.device, self.screen, self._asset, self._avatar = device, screen, asset, avatar
+        self._studio = HeadStudio(HEAD, context=device.context, level=level_named("high"), avatar=avatar)
         self._hud = Hud(device, FontSet.for_language("en"))
         self._head: moderngl.Texture | None = None
-        self._shown: Face | None = None
+        self._shown: Face | str | None = None
 
     def draw(self) -> None:
         """Show the state of things."""
@@ -192,9 +195,13 @@ class _RateWindow:
         self._hud.end()
         pygame.display.flip()
 
-    def _picture(self, face: Face) -> moderngl.Texture:
+    def _picture(self, face: Face | str) -> moderngl.Texture:
         parts = self._asset.model.parts
-        pixels = self._studio.draw(parts.params(parts.numbers(face)))
+        if isinstance(face, str):
+            assert self._avatar is not None, "only an avatar has named expressions"
+            pixels = self._studio.draw_look(look_of(self._avatar, face))
+        else:
+            pixels = self._studio.draw(parts.params(parts.numbers(face)))
         opaque = np.dstack([pixels, np.full(pixels.shape[:2], 255, np.uint8)])
         return self.device.context.texture(pixels.shape[1::-1], 4, np.ascontiguousarray(opaque).tobytes())
 
@@ -230,11 +237,19 @@ class _RateWindow:
 def run_rating(args: argparse.Namespace) -> int:
     """Open the window and rate until all faces are done or it is closed."""
     asset = load_face(args.face_folder)
-    faces = faces_to_rate(args, asset.model.parts)
+    avatar = avatar_of(args)
+    faces: Sequence[Face | str]
+    if avatar is None:
+        faces = faces_to_rate(args, asset.model.parts)
+    elif args.parts or args.faces is not None:
+        raise BadInput("--avatar", expected="neither --parts nor --faces: all its expressions are rated", seen="both")
+    else:
+        faces = expressions_to_rate(avatar)
     need_display()
-    sitting = Sitting(RatingLog(args.out, asset.model.parts), faces, args.rater, args.seed)
+    known = asset.model.parts if avatar is None else tuple(avatar.expressions)
+    sitting = Sitting(RatingLog(args.out, known), faces, args.rater, args.seed)
     device = Device.window(args.size[0], args.size[1], "How does this face feel?")
-    window = _RateWindow(device, asset, RateScreen(sitting, _now))
+    window = _RateWindow(device, asset, RateScreen(sitting, _now), avatar)
     try:
         window.run()
     finally:

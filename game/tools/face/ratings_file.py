@@ -1,6 +1,7 @@
 """Ratings as CSV: rater, face, valence, arousal, name, time. One row per rating, on the disk before the next face.
 
-``face`` names four parts, ``eyes+eyebrows+mouth+skin``. A rater who rates a face twice means the later rating.
+``face`` names four parts, ``eyes+eyebrows+mouth+skin``, or one expression of a foreign avatar. A rater who rates
+a face twice means the later rating.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,19 +18,23 @@ from game.face import REGIONS, Face, Parts
 from game.formats import nearest
 from game.formats.files import decode_utf8, read_bytes
 
-__all__ = ["COLUMNS", "Rating", "RatingLog", "check_rater", "face_code", "parse_face", "read_ratings"]
+__all__ = ["COLUMNS", "Known", "Rating", "RatingLog", "check_rater", "face_code", "parse_face", "read_ratings"]
 
 COLUMNS = ("rater", "face", "valence", "arousal", "name", "time")
 MAX_BYTES = 64_000_000
 MAX_NAME = 64
 
+Known = Parts | tuple[str, ...]
+"""What can be rated: faces made of parts, or the named expressions of an avatar."""
+
 
 @dataclass(frozen=True)
 class Rating:
-    """valence, arousal in −1..1; name: one of the seven emotions or empty; time: ISO 8601, UTC; line: in its file."""
+    """face: drawn, or the name of an avatar's expression; valence, arousal in −1..1; name: one of the seven emotions or
+    empty; time: ISO 8601, UTC; line: in its file."""
 
     rater: str
-    face: Face
+    face: Face | str
     valence: float
     arousal: float
     name: str = ""
@@ -36,9 +42,18 @@ class Rating:
     line: int = 0
 
 
-def face_code(face: Face) -> str:
-    """``eyes+eyebrows+mouth+skin``."""
-    return "+".join(face.parts)
+def face_code(face: Face | str) -> str:
+    """``eyes+eyebrows+mouth+skin``, or the expression's name."""
+    return face if isinstance(face, str) else "+".join(face.parts)
+
+
+def parse_expression(text: str, known: Sequence[str], where: Where | None = None) -> str:
+    """An avatar's expression by its name. Raises BadInput for an unknown one, offering the nearest."""
+    if text not in known:
+        near = nearest(text, known)
+        hint = f"did you mean {near!r}?" if near else None
+        raise BadInput("expression", where=where, expected="one of the avatar's expressions", seen=text, hint=hint)
+    return text
 
 
 def parse_face(text: str, parts: Parts, where: Where | None = None) -> Face:
@@ -76,7 +91,7 @@ def _number(text: str, column: str, where: Where) -> float:
     return value
 
 
-def _rating(row: list[str], parts: Parts, where: Where, line: int) -> Rating:
+def _rating(row: list[str], parts: Known, where: Where, line: int) -> Rating:
     if len(row) != len(COLUMNS):
         raise BadInput(where=where, expected=f"{len(COLUMNS)} columns ({','.join(COLUMNS)})", seen=len(row))
     rater, code, valence, arousal, name, time = row
@@ -84,7 +99,7 @@ def _rating(row: list[str], parts: Parts, where: Where, line: int) -> Rating:
         raise BadInput("name", where=where, expected=" | ".join(EMOTIONS) + " | nothing", seen=name)
     return Rating(
         check_rater(rater, where),
-        parse_face(code, parts, where),
+        parse_face(code, parts, where) if isinstance(parts, Parts) else parse_expression(code, parts, where),
         _number(valence, "valence", where),
         _number(arousal, "arousal", where),
         name,
@@ -93,16 +108,16 @@ def _rating(row: list[str], parts: Parts, where: Where, line: int) -> Rating:
     )
 
 
-def read_ratings(path: Path, parts: Parts) -> list[Rating]:
+def read_ratings(path: Path, parts: Known) -> list[Rating]:
     """All ratings of a file that count, in its order. Raises BadInput with file:line for the first wrong row."""
     return _parse(decode_utf8(read_bytes(path, max_bytes=MAX_BYTES, what="ratings file"), path), path, parts)
 
 
-def _parse(text: str, path: Path, parts: Parts) -> list[Rating]:
+def _parse(text: str, path: Path, parts: Known) -> list[Rating]:
     if "\0" in text:
         raise BadInput(where=Where(path), expected="text", seen="a NUL byte")
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    latest: dict[tuple[str, Face], Rating] = {}
+    latest: dict[tuple[str, Face | str], Rating] = {}
     started = False
     try:
         for row in reader:
@@ -139,7 +154,7 @@ class RatingLog:
     Opening checks the whole file and repairs one thing: a last row cut off by a power loss, which nobody confirmed.
     """
 
-    def __init__(self, path: Path, parts: Parts) -> None:
+    def __init__(self, path: Path, parts: Known) -> None:
         self.path = path
         self.ratings: list[Rating] = []
         self._written: list[tuple[int, int]] = []  # where each row of this sitting starts and ends

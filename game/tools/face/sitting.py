@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import sha256
 
@@ -45,7 +46,7 @@ class Sitting:
     ``point``: what has been set for the face now shown, None before the first click. ``name``: one of the seven or "".
     """
 
-    def __init__(self, log: RatingLog, faces: list[Face], rater: str, seed: int) -> None:
+    def __init__(self, log: RatingLog, faces: Sequence[Face | str], rater: str, seed: int) -> None:
         self.log = log
         self.rater = check_rater(rater)
         # Everybody gets an order of their own, and the same one again after a break.
@@ -59,7 +60,7 @@ class Sitting:
         self.message = ""
 
     @property
-    def face(self) -> Face | None:
+    def face(self) -> Face | str | None:
         """The face to rate now; None when all are done."""
         return self._left[0] if self._left else None
 
