@@ -66,7 +66,7 @@ def emotion_recipes(names: Sequence[str]) -> dict[str, tuple[tuple[str, float], 
     found: dict[str, str] = {}
     for emotion, words in _WORDS.items():
         exact = next((folded[word] for word in words if word in folded), None)
-        within = next((name for low, name in folded.items() for word in words if len(word) > 2 and word in low), None)
+        within = next((name for low, name in folded.items() for word in words if _tells(word) and word in low), None)
         chosen = exact or within
         if chosen is not None:
             found[emotion] = chosen
@@ -78,6 +78,11 @@ def emotion_recipes(names: Sequence[str]) -> dict[str, tuple[tuple[str, float], 
             parts = ((found.get(part, folded.get(part, "")), share) for part, share in _INSTEAD.get(emotion, ()))
             recipes[emotion] = tuple((name, share) for name, share in parts if name)
     return recipes
+
+
+def _tells(word: str) -> bool:
+    """Whether a word inside a longer name still says what it says alone."""
+    return len(word) > 2 or not word.isascii()
 
 
 class AvatarFace:

@@ -203,7 +203,7 @@ def test_saving_a_face_and_saying_why_not(author, asset, tmp_path):
 
 
 def test_the_shipped_expressions_can_all_be_spoken():
-    from game.story.reader import load_faces
+    from game.story.surroundings import load_faces
 
     spoken = load_faces(ROOT / "dialogue" / "faces.yaml")
     assert set(load_face().expressions) <= set(spoken)
@@ -313,3 +313,31 @@ def test_one_head_after_the_other_leaks_no_face(asset):
 
 def test_the_assets_were_left_alone():
     assert (ASSETS / "face" / "parts.yaml").read_text().count("# rated by") == 0
+
+
+def test_a_named_expression_opens_with_everything_it_holds(author, tmp_path):
+    """smirk looks aside and lifts one corner: numbers that no part has. They survive opening, keeping and saving."""
+    from game.core import ASSETS
+    from game.face import load_expressions
+    from game.tools.face.author import Author
+
+    path = tmp_path / "expressions.yaml"
+    path.write_text((ASSETS / "face" / "expressions.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    mine = Author(author.asset, path)
+    mine.open("smirk")
+    held = dict(mine.draft.change)
+    assert held["mouth_asym"] == 15.0
+    assert held["look_x"] == -0.35
+    mine.keep(0)
+    assert mine.save("smirk_again")
+    read = load_expressions(path, mine.parts)
+    np.testing.assert_allclose(read["smirk_again"].params, read["smirk"].params, atol=1e-9)
+    # Another mouth brings its own numbers; those of the eyes stay.
+    mine.put("mouth", "pout")
+    assert "mouth_asym" not in dict(mine.draft.change)
+    assert dict(mine.draft.change)["look_x"] == -0.35
+    mine.recall(0)
+    assert dict(mine.draft.change) == held
+    mine.undo()
+    mine.undo()
+    assert dict(mine.draft.change) == held

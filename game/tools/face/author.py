@@ -11,15 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.core import EMOTIONS, BadInput
-from game.face import REGIONS, Face, FaceAsset, NamedExpression, Parts, load_expressions
+from game.face import FIELDS, INDEX, REGIONS, Face, FaceAsset, NamedExpression, Parts, load_expressions
 from game.tools.face.wanted import COHERENCE, Found, Proposer, Wanted
 from game.tools.face.yaml_edit import add_expression, add_to_dialogue, check_name
 
-__all__ = ["Author", "Draft"]
+__all__ = ["Author", "Change", "Draft"]
 
 Floats = NDArray[np.float64]
 TOP = 12
 MAX_UNDO = 500
+
+Change = tuple[tuple[str, float], ...]
+"""Numbers of a named expression that differ from those of its parts: (name, value)."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,8 @@ class Draft:
     """One state of the work, immutable: what undo goes back to.
 
     spread: deviation of a wanted Gaussian, 0 for a point; emotion: one of the seven where a name was asked for, which
-    tells fear from anger; kept: the faces A and B.
+    tells fear from anger; change: what an opened expression holds beyond its parts; kept: the faces A and B,
+    and theirs.
     """
 
     point: tuple[float, float] = (0.0, 0.0)
@@ -37,7 +41,9 @@ class Draft:
     diverse: bool = True
     face: Face = field(default_factory=Face)
     locked: frozenset[str] = frozenset()
+    change: Change = ()
     kept: tuple[Face | None, Face | None] = (None, None)
+    kept_change: tuple[Change, Change] = ((), ())
 
 
 class Author:
@@ -54,7 +60,7 @@ class Author:
         self._past: list[Draft] = []
         self._future: list[Draft] = []
         self._before_drag: Draft | None = None
-        self._saved: dict[str, Face] = {}
+        self._saved: dict[str, tuple[Face, Change]] = {}
         self._asked: tuple[object, ...] = ()
         self._found: list[Found] = []
         self.names: Mapping[str, NamedExpression] = load_expressions(save_to, self.parts) if save_to.exists() else {}
@@ -135,17 +141,37 @@ class Author:
     def choose(self, rank: int) -> None:
         """Take a proposal as the face, 0 the best."""
         if 0 <= rank < len(self.found):
-            self._step(replace(self.draft, face=self.found[rank].face))
+            kept = self._changes_in(self.draft.locked)
+            self._step(replace(self.draft, face=self.found[rank].face, change=kept))
 
     def put(self, region: str, part: str) -> None:
         """Put one part into the face by hand. Raises BadInput for an unknown one."""
         self.parts.regions[REGIONS.index(region)].index(part)
-        self._step(replace(self.draft, face=replace(self.draft.face, **{region: part})))
+        kept = self._changes_in(frozenset(REGIONS) - {region})
+        self._step(replace(self.draft, face=replace(self.draft.face, **{region: part}), change=kept))
+
+    def _changes_in(self, regions: frozenset[str]) -> Change:
+        """What the face holds beyond its parts in some regions: another part brings its own numbers."""
+        return tuple((name, value) for name, value in self.draft.change if FIELDS[INDEX[name]].region in regions)
 
     def take(self, face: Face) -> None:
-        """Take a whole face: a kept or a named one."""
+        """Take a whole face of parts."""
         self.parts.numbers(face)
-        self._step(replace(self.draft, face=face))
+        self._step(replace(self.draft, face=face, change=()))
+
+    def open(self, name: str) -> None:
+        """Take a named expression with everything it holds. Raises KeyError for an unknown one."""
+        face, change = self.expression(name)
+        self._step(replace(self.draft, face=face, change=change))
+
+    def expression(self, name: str) -> tuple[Face, Change]:
+        """Parts of a named expression, and what it holds beyond them."""
+        if name in self._saved:
+            return self._saved[name]
+        known = self.names[name]
+        of_parts = self.parts.params(self.parts.numbers(known.face))
+        differs = np.flatnonzero(np.abs(known.params - of_parts) > 1e-9)
+        return known.face, tuple((FIELDS[i].name, float(known.params[i])) for i in differs.tolist())
 
     def lock(self, region: str) -> None:
         """Lock a region at its present part, or free it. The last free region stays free: nothing could be proposed."""
@@ -161,14 +187,16 @@ class Author:
 
     def keep(self, slot: int) -> None:
         """Keep the face as A (0) or B (1)."""
-        kept = (self.draft.face, self.draft.kept[1]) if slot == 0 else (self.draft.kept[0], self.draft.face)
-        self._step(replace(self.draft, kept=kept))
+        draft = self.draft
+        kept = (draft.face, draft.kept[1]) if slot == 0 else (draft.kept[0], draft.face)
+        change = (draft.change, draft.kept_change[1]) if slot == 0 else (draft.kept_change[0], draft.change)
+        self._step(replace(draft, kept=kept, kept_change=change))
 
     def recall(self, slot: int) -> None:
         """Take A or B as the face."""
         face = self.draft.kept[slot]
         if face is not None:
-            self._step(replace(self.draft, face=face))
+            self._step(replace(self.draft, face=face, change=self.draft.kept_change[slot]))
 
     def undo(self) -> None:
         """One step back. A file that was saved stays saved."""
@@ -195,14 +223,15 @@ class Author:
 
     def faces_named(self) -> dict[str, Face]:
         """Every named expression of the file, those saved now last."""
-        return {name: e.face for name, e in self.names.items()} | self._saved
+        return {name: e.face for name, e in self.names.items()} | {name: row[0] for name, row in self._saved.items()}
 
     def save(self, name: str, label: str = "") -> bool:
         """Append the face to the file under a name. False, with the reason in ``message``, where it cannot be."""
         try:
             name = check_name(name.strip(), list(self.faces_named()))
-            add_expression(self.save_to, name, label.strip() or name.replace("_", " "), self.draft.face, self.parts)
-            self._saved[name] = self.draft.face
+            draft, shown = self.draft, label.strip() or name.replace("_", " ")
+            add_expression(self.save_to, name, shown, draft.face, self.parts, draft.change)
+            self._saved[name] = (draft.face, draft.change)
             if self.dialogue_faces is not None:
                 add_to_dialogue(self.dialogue_faces, name)
         except BadInput as error:

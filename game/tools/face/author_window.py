@@ -17,7 +17,7 @@ from game.app.play import need_display
 from game.core import ASSETS, DIALOGUE, EMOTIONS
 from game.face import Face, load_face
 from game.render import Device, level_named
-from game.tools.face.author import Author
+from game.tools.face.author import Author, Change
 from game.tools.face.author_pad import PadWidget
 from game.tools.face.author_style import FONT_SIZE, colour, load_fonts, set_style
 from game.tools.face.gallery import Gallery
@@ -138,11 +138,13 @@ class AuthorWindow:
         imgui.get_window_draw_list().add_text(self._at(x, y), colour(name), text)
         imgui.pop_font()
 
-    def _picture(self, face: Face, x: float, y: float, size: float, edge: int, width: float = 2.0) -> None:
+    def _picture(
+        self, face: Face, x: float, y: float, size: float, edge: int, width: float = 2.0, change: Change = ()
+    ) -> None:
         """A face in a frame, or an empty place until it is drawn."""
         lines = imgui.get_window_draw_list()
         low, high = self._at(x, y), self._at(x + size, y + size)
-        picture = self._gallery.get(face)
+        picture = self._gallery.get(face, change)
         if picture is None:
             lines.add_rect_filled(low, high, colour("blank"))
         else:
@@ -223,7 +225,9 @@ class AuthorWindow:
                 imgui.dummy(self._at(150, 150))
                 if imgui.is_item_hovered():
                     self._hovered = face
-                self._picture(face, x, 530, 150, colour("red" if slot == 0 else "blue"), 3.0)
+                self._picture(
+                    face, x, 530, 150, colour("red" if slot == 0 else "blue"), 3.0, author.draft.kept_change[slot]
+                )
                 mean, _ = author.gaussian(face)
                 numbers = f"{letter}  {mean[0]:+.2f} {mean[1]:+.2f}   log p {author.density(face):+.2f}"
                 self._text(x, 684, numbers, "ink", 18)
@@ -239,7 +243,7 @@ class AuthorWindow:
     def _face(self) -> None:
         author, face = self.author, self.author.draft.face
         self._text(926, 10, "The face", bold=True, size=24)
-        self._picture(face, 926, 44, 340, colour("line"), 2.5)
+        self._picture(face, 926, 44, 340, colour("line"), 2.5, author.draft.change)
         mean, _ = author.gaussian(face)
         self._text(926, 390, f"says {mean[0]:+.2f} {mean[1]:+.2f}    log p {author.density(face):+.2f}", bold=True)
         for i, (region, part) in enumerate(zip(author.parts.regions, face.parts, strict=True)):
@@ -278,8 +282,8 @@ class AuthorWindow:
         named = author.faces_named()
         if imgui.begin_combo("##named", f"open one of {len(named)}"):
             for name, face in named.items():
-                if imgui.selectable(name, face == author.draft.face)[0]:
-                    author.take(face)
+                if imgui.selectable(name, author.expression(name) == (author.draft.face, author.draft.change))[0]:
+                    author.open(name)
                 if imgui.is_item_hovered():
                     self._hovered = face
             imgui.end_combo()

@@ -6,7 +6,8 @@ from collections import OrderedDict
 from collections.abc import Callable
 from time import perf_counter
 
-from game.face import Face, Parts
+from game.face import INDEX, Face, Parts
+from game.tools.face.author import Change
 from game.tools.face.heads import HeadStudio
 from game.tools.face.imgui_backend import ImguiBackend, ImguiTexture
 
@@ -23,25 +24,29 @@ class Gallery:
         self, backend: ImguiBackend, studio: HeadStudio, parts: Parts, clock: Callable[[], float] = perf_counter
     ) -> None:
         self._backend, self._studio, self._parts, self._clock = backend, studio, parts, clock
-        self._pictures: OrderedDict[Face, ImguiTexture] = OrderedDict()
-        self._asked: dict[Face, None] = {}
+        self._pictures: OrderedDict[tuple[Face, Change], ImguiTexture] = OrderedDict()
+        self._asked: dict[tuple[Face, Change], None] = {}
 
-    def get(self, face: Face) -> ImguiTexture | None:
-        """The picture, or None while it waits to be drawn."""
-        picture = self._pictures.get(face)
+    def get(self, face: Face, change: Change = ()) -> ImguiTexture | None:
+        """The picture, or None while it waits to be drawn; change: numbers beyond those of the parts."""
+        key = (face, change)
+        picture = self._pictures.get(key)
         if picture is None:
-            self._asked[face] = None
+            self._asked[key] = None
         else:
-            self._pictures.move_to_end(face)
+            self._pictures.move_to_end(key)
         return picture
 
     def work(self) -> bool:
         """Draw what the last frame asked for: one at least, more while the budget lasts. True where some is left."""
         end = self._clock() + BUDGET_S
-        for face in list(self._asked):
-            pixels = self._studio.draw(self._parts.params(self._parts.numbers(face)))
-            self._pictures[face] = ImguiTexture(self._backend, pixels)
-            del self._asked[face]
+        for key in list(self._asked):
+            face, change = key
+            params = self._parts.params(self._parts.numbers(face)).copy()
+            for name, value in change:
+                params[INDEX[name]] = value
+            self._pictures[key] = ImguiTexture(self._backend, self._studio.draw(params))
+            del self._asked[key]
             if self._clock() > end:
                 break
         left = bool(self._asked)

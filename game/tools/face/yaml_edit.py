@@ -175,8 +175,11 @@ def check_name(name: str, taken: Sequence[str], where: Where | None = None) -> s
     return name
 
 
-def add_expression(path: Path, name: str, label: str, face: Face, parts: Parts) -> None:
-    """Append a named expression behind the others; a missing file is begun. Raises BadInput, the file as it was."""
+def add_expression(
+    path: Path, name: str, label: str, face: Face, parts: Parts, change: Sequence[tuple[str, float]] = ()
+) -> None:
+    """Append a named expression behind the others; a missing file is begun. change: numbers that differ from the
+    parts'. Raises BadInput, the file as it was."""
     text = read_source(path) if path.exists() else NEW_EXPRESSIONS
     if not text.endswith("\n"):
         text += "\n"
@@ -188,6 +191,8 @@ def add_expression(path: Path, name: str, label: str, face: Face, parts: Parts) 
     shown = " ".join(label.replace('"', "'").replace("\\", "/").split())[:60] or name
     rows = [f"  {name}:", f'    label: {{en: "{shown}"}}']
     rows += [f"    {region}: {part}" for region, part in zip(REGIONS, face.parts, strict=True)]
+    if change:
+        rows.append(f"    change: {{{', '.join(f'{field}: {value:.10g}' for field, value in change)}}}")
     lines = text.splitlines()
     place = _end_of_block(lines, "expressions", path)
     merged = "\n".join([*lines[:place], *rows, *lines[place:]]) + "\n"
