@@ -28,7 +28,7 @@ void main() {
 #if !CUT && !BLEND
     alpha = 1.0;
 #endif
-    vec3 bright = texel.rgb * lit.rgb;
+    vec3 bright = texel.rgb * lit.rgb * tint_lit.rgb;
 #if UNLIT
     vec3 c = bright;
 #else
@@ -36,7 +36,7 @@ void main() {
     float n_dot_l = h * 2.0 - 1.0 + toon_shape.x;
     float soft = max(1.0 - toon_shape.y, 0.02);
     float share = sat((n_dot_l + soft) / (2.0 * soft)) * mix(0.35, 1.0, sunlight(v_shadow.xyz));
-    vec3 dark = texture(shade_picture, v_uv).rgb * v_tint.rgb * shade;
+    vec3 dark = texture(shade_picture, v_uv).rgb * v_tint.rgb * shade * tint_shade.rgb;
     vec3 c = mix(dark * mix(vec3(0.94, 0.93, 1.0), vec3(1.03), v_terms.w), bright, share);
     float edge = pow(sat(1.0 - abs(v_shadow.w) + rim_shape.y), max(rim_shape.x, 1e-3));
     c = sqrt(c * c + rim * rim * edge);

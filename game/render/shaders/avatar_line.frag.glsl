@@ -1,3 +1,4 @@
+#include "frame.glsl"
 #include "grade.glsl"
 #needs CUT
 in vec2 v_uv;
@@ -13,5 +14,5 @@ void main() {
 #if CUT
     if (texel.a < cutoff) discard;
 #endif
-    colour = vec4(grade(min(ink * mix(vec3(1.0), texel.rgb, ink_lit), vec3(1.0))), 1.0);
+    colour = vec4(grade(min(ink * tint_deep.rgb * mix(vec3(1.0), texel.rgb, ink_lit), vec3(1.0))), 1.0);
 }
