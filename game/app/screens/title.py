@@ -60,9 +60,15 @@ class TitleScreen(MenuScreen):
         self._buttons.draw(canvas)
         if session.market.avatar is not None:
             line = s("avatar_line", line=session.market.avatar.licence)
-            canvas.text(
-                canvas.width - 24, canvas.height - 26, line, 12, fade(PALETTE["paper_warm"], 0.9), align="right"
+            while len(line) > 2 and canvas.measure(line, 12) > canvas.width - 80:
+                line = line[:-2].rstrip() + "…"
+            wide = canvas.measure(line, 12)
+            canvas.panel(
+                Rect(canvas.width - wide - 34, canvas.height - 32, wide + 20, 23),
+                fade(PALETTE["shade"], 0.88),
+                radius=8,
             )
+            canvas.text(canvas.width - 24 - wide, canvas.height - 29, line, 12, PALETTE["paper_warm"])
         if session.message:
             canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
 
