@@ -22,12 +22,14 @@ from numpy.typing import NDArray
 
 from game.core.clip import Clip
 from game.core.errors import BadInput, Where
+from game.core.skeleton import Skeleton
 from game.formats import (
     GltfFile,
     Vrm,
     animation_clip,
     build_vrm,
     build_vrma,
+    detect_map,
     estimate_scale,
     read_bvh,
     read_gltf,
@@ -122,6 +124,8 @@ def _open_gltf(path: Path, animation: int, fps: float) -> _Contents:
     }
     if vrm is not None:
         facts.update(_character_facts(file, vrm))
+    elif file.skins or any(mesh.target_names for mesh in file.meshes):
+        facts.update(_figure_facts(file, rig.skeleton))
     if not file.animations:
         rest = rig.skeleton
         clip = Clip(rest, 1.0 / fps, rest.rest_rotation[None], rest.rest_translation[None], name=path.stem)
@@ -159,6 +163,17 @@ def _character_facts(file: GltfFile, vrm: Vrm) -> dict[str, Any]:
         ],
         "licence": dict(vrm.licence),
     }
+
+
+def _figure_facts(file: GltfFile, skeleton: Skeleton) -> dict[str, Any]:
+    """Of a figure without a VRM block: what ``--avatar`` would make of it."""
+    try:
+        bones = {bone: " + ".join(names) for bone, names in detect_map(skeleton, file.path).joints.items() if names}
+    except BadInput as error:
+        bones = {"not a person": str(error.seen)}
+    targets = dict.fromkeys(name for mesh in file.meshes for name in mesh.target_names)
+    stated = str(file.json.get("asset", {}).get("copyright", ""))
+    return {"bones": bones, "expressions": list(targets), "licence": stated or "none stated in the file"}
 
 
 def _as_json(contents: _Contents, frames: list[int], positions: NDArray[np.floating[Any]]) -> dict[str, Any]:

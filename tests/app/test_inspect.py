@@ -150,3 +150,12 @@ def test_characters_show_their_bones_and_licence(shared_data: Path, capsys: pyte
 
 def test_the_module_says_how_to_use_it():
     assert "run_game.py inspect" in (inspect.__doc__ or "")
+
+
+def test_a_figure_without_a_vrm_block_tells_what_an_avatar_needs(shared_data: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["inspect", str(shared_data / "gltf_skin_morph" / "Fox.glb"), "--json"]) == 0
+    fox = json.loads(capsys.readouterr().out)
+    assert "no head" in fox["bones"]["not a person"]
+    assert "PixelMannen" in fox["licence"]
+    assert main(["inspect", str(shared_data / "gltf_skin_morph" / "facecap.glb"), "--json"]) == 0
+    assert "eyeBlink_L" in json.loads(capsys.readouterr().out)["expressions"]
