@@ -178,7 +178,7 @@ class Fitting:
         # 0 far away, 1 near, smooth between.
         nearness = np.minimum(np.maximum((nearness - _OUTSIDE) * _STEEP, np.float32(0.0)), np.float32(1.0))
         nearness *= nearness * (np.float32(3.0) - np.float32(2.0) * nearness)
-        weight = np.empty((n, 6, 2), dtype=np.float32)
+        weight = np.zeros((n, 6, 2), dtype=np.float32)
         weight[:, 5] = nearness[:, 4] * nearness[:, 5] * nearness[:, 6]
         # The table does not give way, so it comes before the body behind it.
         np.multiply(nearness[:, :4], np.float32(1.0) - weight[:, 5:], out=weight[:, :4])
