@@ -7,7 +7,8 @@ examples:
 
 On one machine the same code makes the same bytes. Other CPUs differ in the last bits of a float; --check therefore
 compares numbers: positions within 0.5 mm, angles within 0.05 degrees, colours within 2 of 255 on average. Needs the
-`build` extra: pip install -e '.[build]'.
+`build` extra: pip install -e '.[build]'. Where node has the module gltf-validator (npm install -g gltf-validator),
+--check also lists what the Khronos validator finds wrong with our .vrm and .glb files.
 """
 
 from __future__ import annotations
@@ -18,16 +19,17 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from game.app.gltf_check import validate
 from game.core.errors import BadInput, MissingPart
 from game.core.paths import ASSETS
 from game.formats import read_gltf
 
-__all__ = ["STEPS", "add_arguments", "differences", "run"]
+__all__ = ["STEPS", "add_arguments", "check_models", "differences", "run"]
 
 LENGTH_TOLERANCE = 5e-4
 """Metres, and everything else that glTF files count in units about as large."""
@@ -138,6 +140,20 @@ def _picture(made: Path, kept: Path) -> str | None:
     return f"differs by {mean:.1f} of 255 on average" if mean > PICTURE_TOLERANCE else None
 
 
+def check_models(models: Sequence[Path]) -> int:
+    """Print what the Khronos validator finds wrong with model files, or why it did not run; -> how many findings."""
+    if not models:
+        return 0
+    try:
+        findings = validate(models)
+    except MissingPart as reason:
+        print(reason)
+        return 0
+    for finding in findings:
+        print(finding)
+    return len(findings)
+
+
 def run(args: argparse.Namespace) -> int:
     """Build into a folder of its own first; only whole, successful steps replace what is there."""
     unknown = [name for name in args.what if name not in STEPS]
@@ -161,6 +177,8 @@ def run(args: argparse.Namespace) -> int:
                     print(f"{kept.relative_to(ASSETS.parent)}: {found}")
                 if not args.check:
                     shutil.copyfile(path, kept)
+        if args.check:
+            different += check_models(sorted(p for p in folder.iterdir() if p.suffix in {".vrm", ".glb"}))
         verb = "checked" if args.check else "built"
         print(f"{name}: {verb} {len(made)} files in {time.perf_counter() - start:.1f} s")
     return 1 if args.check and different else 0

@@ -24,7 +24,8 @@ class Session:
 
     assets: those of the stall one stands at; during a talk, bent by its lesson. loader: reads the other stalls;
     taken_up: whether the game saved last has been looked for. designed: a designer has had a hand in it (a script
-    reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more.
+    reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more. pointed: the item on the table
+    under the pointer.
     """
 
     assets: StepAssets
@@ -38,6 +39,7 @@ class Session:
     running: bool = True
     loader: StallLoader | None = None
     taken_up: bool = False
+    pointed: str | None = None
     designed: bool = False
 
     @property

@@ -17,7 +17,18 @@ from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
 from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceSignal, FaceStyle, read_style, tessellate
 from game.formats import load_yaml
-from game.render import DESIGN_SHARE, HERO, Camera, CharacterModel, CrowdView, FrameView, Hud, StaticMesh
+from game.render import (
+    DESIGN_SHARE,
+    HERO,
+    Camera,
+    Card,
+    CharacterModel,
+    CrowdView,
+    FrameView,
+    Hud,
+    ItemView,
+    StaticMesh,
+)
 from game.render.assets import load_character, load_picture, load_stall
 from game.render.avatar_model import AvatarLook, AvatarModel
 
@@ -36,8 +47,9 @@ _STALL_SEEN_M, _FACE_SEEN_M = 1.25, 0.80
 class StageAssets:
     """Everything drawn: the person's meshes and rig, the stall, the painted backdrop (h, w, 3) uint8.
 
-    carries: item -> the item that stands on it. face: how the person's face is drawn. lift_m: how much higher the
-    person's head is than the reference's. avatar: the foreign one in the shopkeeper's place, if any.
+    carries: item -> the item that stands on it; cards: item -> its price card. face: how the person's face is drawn.
+    lift_m: how much higher the person's head is than the reference's. avatar: the foreign one in the shopkeeper's
+    place, if any.
     """
 
     model: CharacterModel | AvatarModel
@@ -45,6 +57,7 @@ class StageAssets:
     stall: StaticMesh
     backdrop: NDArray[np.uint8]
     carries: Mapping[str, str]
+    cards: Mapping[str, Card]
     face: FaceStyle = DEFAULT_STYLE
     lift_m: float = 0.0
     avatar: Avatar | None = None
@@ -93,6 +106,7 @@ def load_stage(
         stall=load_stall(stalls / f"{stall}.glb"),
         backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
         carries=_carries(stalls / f"{stall}.yaml"),
+        cards=_cards(stalls / f"{stall}.yaml"),
     )
 
 
@@ -105,6 +119,17 @@ def _style(path: Path) -> FaceStyle:
 def _carries(path: Path) -> dict[str, str]:
     goods = load_yaml(path)["goods"].as_list()
     return {row["on"].as_str(): row["item"].as_str() for row in goods if row.get("on") is not None}
+
+
+def _cards(path: Path) -> dict[str, Card]:
+    """Item -> where its price card stands."""
+    cards = {}
+    for row in load_yaml(path)["goods"]:
+        card = row.get("card")
+        if card is not None:
+            x, z, turn_deg = (value.as_float() for value in card)
+            cards[row["item"].as_str()] = (x, z, radians(turn_deg))
+    return cards
 
 
 @dataclass
@@ -169,6 +194,7 @@ class StageShow:
         time_s: float = 0.0,
         day_share: float = DESIGN_SHARE,
         crowd: CrowdView | None = None,
+        item: ItemView | None = None,
         hud: Callable[[Hud], None] | None = None,
     ) -> FrameView:
         """The frame as the renderer wants it."""
@@ -186,6 +212,7 @@ class StageShow:
             time_s=time_s,
             day_share=day_share,
             crowd=crowd,
+            item=item,
             hud=hud,
         )
 

@@ -12,8 +12,9 @@ from game.app.market import read_stage
 from game.app.opening import AUTOSAVE, take_up
 from game.app.overlays.inspector import Inspector
 from game.app.passersby import Known, Passersby, load_cast
+from game.app.picking import Picker
 from game.app.saves import SavedGame, save_game
-from game.app.screens import TalkScreen, TitleScreen
+from game.app.screens import InspectScreen, TalkScreen, TitleScreen
 from game.app.session import Screen, Session
 from game.app.settings import TIMERS, user_folder
 from game.app.stage import StageAssets, StageShow
@@ -21,7 +22,7 @@ from game.app.step import step
 from game.app.ui import Canvas
 from game.app.world import TICK_S, Intent
 from game.core.errors import BadInput
-from game.render import DEFAULT, DESIGN_SHARE, Device, FontSet, Hud, Level, MissingFont, Renderer
+from game.render import DEFAULT, DESIGN_SHARE, Device, FontSet, Hud, ItemView, Level, MissingFont, Renderer
 
 __all__ = ["Window"]
 
@@ -57,6 +58,7 @@ class Window:
         self._models: Known = {}
         self._language = _speakable(session)
         self._late_s = 0.0
+        self._picker: tuple[object, Picker] | None = None
         self._tick(None)
 
     def populate(self) -> None:
@@ -81,6 +83,8 @@ class Window:
             self.session.settings = self.session.settings.next("fullscreen")
             return
         action = self._in_reference(action)
+        if action.at is not None:
+            self.session.pointed = self.picker().at(action.at, self.session.afternoon.owned(self.session.stall))
         if not self.inspector.handle(self.session, action):
             self._go(self.screen.handle(self.session, action))
 
@@ -89,6 +93,16 @@ class Window:
             return action
         scale = min(self.device.size[0] / 1280.0, self.device.size[1] / 720.0)
         return replace(action, at=(action.at[0] / scale, action.at[1] / scale))
+
+    def picker(self) -> Picker:
+        """Where the goods are in the present picture, in reference pixels."""
+        camera = self.stage.framed(self.direction.camera(self.session.world.time_s + self._late_s))
+        (width, height), scale = self.device.size, min(self.device.size[0] / 1280.0, self.device.size[1] / 720.0)
+        key = (self._stall, camera, self.device.size)
+        if self._picker is None or self._picker[0] != key:
+            size = (width / scale, height / scale)
+            self._picker = (key, Picker.of(self.stage.stall, self.stage.cards, camera, size))
+        return self._picker[1]
 
     def _go(self, screen: Screen | None) -> None:
         if screen is not None:
@@ -175,9 +189,21 @@ class Window:
             time_s=session.world.time_s + self._late_s,
             crowd=None if self.crowd is None else self.crowd.view(self._late_s / TICK_S),
             day_share=session.day_share if session.afternoon.wishes else DESIGN_SHARE,
+            item=self._item_shown(),
             hud=self._draw_hud,
         )
         self.renderer.draw(view)
+
+    def _item_shown(self) -> ItemView | None:
+        """The item in the player's hand."""
+        screen = self.screen
+        if not isinstance(screen, InspectScreen):
+            return None
+        hand, group = screen.handling, f"item:{screen.item}"
+        if group not in self.stage.stall.anchors:
+            return None
+        yaw, pitch = hand.ahead(self._late_s, reduced_motion=self.session.settings.reduced_motion)
+        return ItemView(group, yaw, pitch, hand.zoom, self.stage.cards.get(screen.item))
 
     def _paint_pictures(self) -> None:
         """Pictures of the stalls for the map: one a frame, where a hitch is not seen."""

@@ -6,6 +6,7 @@ from game.render.crowd import CrowdLook, CrowdMesh, CrowdView, dressed, load_cro
 from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device
 from game.render.hud import Colour, Hud, rgba
+from game.render.item_drawing import Card, ItemView, cut_item, own_triangles
 from game.render.levels import DEFAULT, LEVELS, Level, level_named, pick_level
 from game.render.model import CharacterMesh, CharacterModel, StaticMesh
 from game.render.renderer import Renderer
@@ -19,6 +20,7 @@ __all__ = [
     "HERO",
     "LEVELS",
     "Camera",
+    "Card",
     "CharacterMesh",
     "CharacterModel",
     "Colour",
@@ -29,16 +31,19 @@ __all__ = [
     "FontSet",
     "FrameView",
     "Hud",
+    "ItemView",
     "Level",
     "MissingFont",
     "Renderer",
     "StaticMesh",
+    "cut_item",
     "dressed",
     "level_named",
     "load_character",
     "load_crowd_mesh",
     "load_picture",
     "load_stall",
+    "own_triangles",
     "pick_level",
     "rgba",
     "save_png",

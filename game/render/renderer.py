@@ -19,6 +19,7 @@ from game.render.daylight import DESIGN_SHARE, stepped
 from game.render.device import PREMULTIPLIED, Device, Owner
 from game.render.face_painter import FACE_MM, FacePainter, hidden_face
 from game.render.hud import Hud
+from game.render.item_drawing import ItemDrawing, ItemView
 from game.render.levels import DEFAULT, Level
 from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
 from game.render.model import CharacterModel, StaticMesh
@@ -46,6 +47,7 @@ class _Canvas:
     seen: BakeKey | None = None  # of the last frame
     turning: bool = False  # the camera moved between the last two frames
     last_box: Box = (0, 0, 0, 0)  # where the person was
+    item: tuple[object, ...] = ()  # what is baked in the place of the stall
 
 
 class Renderer(Owner):
@@ -80,6 +82,9 @@ class Renderer(Owner):
         self._moving: MovingDrawing | None = None
         self._crowd: CrowdDrawing | None = None
         self._moving_meshes = stall.moving if stall is not None else ()
+        self._stall, self._backdrop = stall, backdrop
+        self._item: ItemDrawing | None = None
+        self._item_seen: ItemView | None = None
         # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
         self.drafts = device.windowed
         self._frames = 0
@@ -96,10 +101,12 @@ class Renderer(Owner):
     ) -> None:
         """Draw another person at another stall from the next frame on; interface and fonts stay."""
         self._drop_level()
+        self._drop_item()
         self._owned.remove(self._scene)
         self._scene.release()
         self._scene = self.own(SceneDrawing(self.device, stall, backdrop))
         self._model, self._face = model, None
+        self._stall, self._backdrop = stall, backdrop
         self._moving_meshes = stall.moving if stall is not None else ()
         self.set_level(self.level)
 
@@ -130,8 +137,14 @@ class Renderer(Owner):
             self._crowd.release()
         self._crowd = CrowdDrawing(self.device, looks) if looks else None
 
+    def _drop_item(self) -> None:
+        if self._item is not None:
+            self._item.release()
+        self._item = None
+
     def release(self) -> None:
         self.meet(())
+        self._drop_item()
         self._drop_level()
         super().release()
 
@@ -170,7 +183,10 @@ class Renderer(Owner):
 
     def _draw(self, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None) -> moderngl.Framebuffer:
         """Draw a frame into the canvas and, if given, the window; returns where it can be read."""
+        if view.item is not None and self._stall is not None:
+            return self._draw_item(view.item, view, canvas, window)
         targets = canvas.targets
+        canvas.item = ()
         day_share = stepped(view.day_share) if view.show_stall else DESIGN_SHARE
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share)
         self._light_up(day_share)
@@ -188,6 +204,27 @@ class Renderer(Owner):
             changed = union(changed, canvas.last_box) if changed[2] else canvas.last_box
         self._frames += 1
         return self._show(view, targets, changed, window)
+
+    def _draw_item(
+        self, item: ItemView, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None
+    ) -> moderngl.Framebuffer:
+        """One item of the stall, large, in the place of the scene."""
+        assert self._stall is not None
+        if self._item is None or self._item.group != item.group:
+            self._drop_item()
+            self._item = ItemDrawing(self.device, self._stall, item, self._backdrop)
+        self._light_up(stepped(view.day_share))
+        targets = canvas.targets
+        draft = self.drafts and self._item_seen is not None and item != self._item_seen
+        wanted = (item, self._lights.day.share, draft)
+        if canvas.item not in {wanted, (*wanted[:2], False)}:
+            self._item.draw(item, targets.size, targets.bake, self.level.line_px, self._lights, draft=draft)
+            canvas.item = wanted
+        canvas.baked, canvas.last_box, self._item_seen = None, (0, 0, 0, 0), item
+        targets.work.use()
+        self.device.context.copy_framebuffer(targets.work, targets.bake.still)
+        self._frames += 1
+        return self._show(view, targets, (0, 0, *targets.size), window)
 
     def _light_up(self, day_share: float) -> None:
         if self._lights.day.share != day_share:
@@ -275,7 +312,7 @@ class Renderer(Owner):
             context.copy_framebuffer(output, picture)
             picture = output
         picture.use()
-        if view.show_stall:
+        if view.show_stall and view.item is None:
             self._motes.draw(view.time_s, targets.size[0] / targets.size[1])
         if view.hud is not None:
             self.hud.begin(targets.size)

@@ -81,6 +81,7 @@ class SceneDrawing(Owner):
     def _make_mesh(self, device: Device, mesh: StaticMesh) -> None:
         context = device.context
         place = self.own(context.buffer(np.hstack([mesh.position, mesh.normal, mesh.outline[:, None]])))
+        self._place, self._outline = place, mesh.outline[:, None]
         palette = self.own(context.buffer(np.ascontiguousarray(mesh.palette)))
         index = self.own(context.buffer(np.ascontiguousarray(mesh.triangle)))
 
@@ -130,6 +131,10 @@ class SceneDrawing(Owner):
             entry = layout(program, self._receiver_buffer[stall], position="3f")
             self._receivers[key] = (program, self.own(self._device.vertex_array(program, [entry])))
         return self._receivers[key][1]
+
+    def move(self, position: NDArray[np.float32], normal: NDArray[np.float32]) -> None:
+        """Give the mesh's vertices other places and normals, (v, 3) each."""
+        self._place.write(np.hstack([position, normal, self._outline]))
 
     def bake(self, key: BakeKey, targets: BakeTargets, line_px: float, lights: Lights, *, draft: bool = False) -> None:
         """Draw everything that stands still into ``targets``: the graded picture, its depth, and the dark picture.

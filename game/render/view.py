@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from game.render.avatar_model import AvatarLook
     from game.render.crowd import CrowdView
     from game.render.hud import Hud
+    from game.render.item_drawing import ItemView
 
 __all__ = ["FrameView"]
 
@@ -32,6 +33,7 @@ class FrameView:
     hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
     crowd: passers-by behind the stall, as many as the renderer was given looks for.
     day_share: of the afternoon, 0 at 13:00 to 1 at 18:00.
+    item: an item of the stall to be shown large, in the place of everything else.
     """
 
     skin_matrices: NDArray[np.float32]
@@ -44,4 +46,5 @@ class FrameView:
     time_s: float = 0.0
     day_share: float = DESIGN_SHARE
     crowd: CrowdView | None = None
+    item: ItemView | None = None
     hud: Callable[[Hud], None] | None = None

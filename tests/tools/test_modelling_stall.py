@@ -11,8 +11,9 @@ from scipy.spatial import cKDTree
 
 from game.core.errors import BadInput
 from game.core.humanoid import TABLE_TOP_M
-from game.core.paths import ASSETS
+from game.core.paths import ASSETS, DIALOGUE
 from game.formats import GltfFile, read_gltf
+from game.story import load_script
 from game.tools.modelling.goods import GOODS
 from game.tools.modelling.stall import load_stall
 
@@ -52,6 +53,12 @@ def test_groups_and_goods_are_those_of_the_yaml(name) -> None:
 
 def test_every_item_is_on_some_stall() -> None:
     assert set(GOODS) == {placing.item for name in STALLS for placing in load_stall(FOLDER / f"{name}.yaml").goods}
+
+
+@pytest.mark.parametrize("name", STALLS)
+def test_what_the_dialogue_sells_stands_on_the_table(name) -> None:
+    script = load_script(DIALOGUE / f"{name}.yaml")
+    assert set(script.items) == {placing.item for placing in load_stall(FOLDER / f"{name}.yaml").goods}
 
 
 @pytest.mark.parametrize("name", STALLS)

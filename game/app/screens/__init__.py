@@ -1,6 +1,7 @@
 """The window's screens: title, list, street, table, talk, outcome, epilogue, settings."""
 
 from game.app.screens.epilogue import EpilogueScreen
+from game.app.screens.inspect import InspectScreen
 from game.app.screens.market import MarketScreen, WalkScreen
 from game.app.screens.outcome import OutcomeScreen
 from game.app.screens.table import TableScreen
@@ -11,6 +12,7 @@ from game.app.session import Screen, Session
 
 __all__ = [
     "EpilogueScreen",
+    "InspectScreen",
     "MarketScreen",
     "OutcomeScreen",
     "Screen",

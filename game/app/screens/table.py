@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from game.app.afternoon import is_closed
 from game.app.input import Action
+from game.app.screens.inspect import InspectScreen
 from game.app.session import MenuScreen, Screen, Session
 from game.app.ui import PALETTE, Button, Buttons, Canvas, Rect, fade
 
@@ -29,19 +30,41 @@ class TableScreen(MenuScreen):
         return MarketScreen() if len(session.market.order) > 1 else TableScreen()
 
     def handle(self, session: Session, action: Action) -> Screen | None:
+        items, pointed = session.assets.talk.script.items, session.pointed or ""
+        if action.kind == "key" and action.key == "i":
+            wanted = pointed or self._buttons.focus
+            return InspectScreen(wanted, self) if wanted in items else None
         pressed = self._buttons.handle(action)
+        if action.kind == "click" and pressed is None and pointed in items:
+            if self._buttons.focus == pointed:
+                return InspectScreen(pointed, self)
+            self._buttons.focus = pointed
+            return None
         if action.kind == "back" or pressed == "to_street":
             return self._away(session)
         if pressed == "leave":
             from game.app.screens.epilogue import EpilogueScreen
 
             return EpilogueScreen()
-        if pressed and pressed in session.assets.talk.script.items:
+        if pressed and pressed in items:
             from game.app.screens.talk import TalkScreen
 
             session.begin_talk(pressed)
             return TalkScreen()
         return None
+
+    def _draw_tag(self, session: Session, canvas: Canvas) -> None:
+        """The name of the thing under the pointer, and how to look at it."""
+        item, at = session.assets.talk.script.items.get(session.pointed or ""), self._buttons.mouse
+        if item is None or at is None or any(button.rect.holds(at) for button in self._buttons.buttons):
+            return
+        name, hint = item.name.get(session.strings.language), session.strings("hint_look")
+        width = max(canvas.measure(name, 18, "bold"), canvas.measure(hint, 13)) + 28
+        left = min(max(at[0] - width / 2, 8.0), canvas.width - width - 8)
+        top = max(at[1] - 74, 8.0)
+        canvas.panel(Rect(left, top, width, 52), border=2, radius=14, shadow=8)
+        canvas.text(left + width / 2, top + 6, name, 18, font="bold", align="center")
+        canvas.text(left + width / 2, top + 30, hint, 13, PALETTE["faint"], align="center")
 
     @staticmethod
     def _away(session: Session) -> Screen:
@@ -95,5 +118,6 @@ class TableScreen(MenuScreen):
         )
         self._buttons.lay(buttons)
         self._buttons.draw(canvas)
+        self._draw_tag(session, canvas)
         if session.message:
             canvas.text(24, canvas.height - 40, session.message, 15, PALETTE["white"])

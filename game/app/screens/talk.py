@@ -5,6 +5,7 @@ from __future__ import annotations
 from game.app.input import Action
 from game.app.overlays import draw_overlays
 from game.app.overlays.timer import draw_timer
+from game.app.screens.inspect import InspectScreen
 from game.app.session import Screen, Session
 from game.app.talk import MONEY_STEP, Choice, ask_money
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
@@ -16,6 +17,14 @@ __all__ = ["TalkScreen"]
 CARD_WIDTH = 372.0
 OVERLAY_KEYS = {"f1": "feelings", "f2": "units", "f3": "networks"}
 STANDING = {"offer": "b", "wait": "w", "leave": "g"}
+
+
+def _takes_up(session: Session, action: Action) -> bool:
+    """Whether the player reaches for the thing talked about."""
+    talk = session.world.talk
+    if action.kind == "click":
+        return talk is not None and session.pointed == talk.item
+    return action.kind == "key" and action.key == "i"
 
 
 class TalkScreen:
@@ -44,6 +53,8 @@ class TalkScreen:
             session.overlays ^= {OVERLAY_KEYS[action.key]}
             return None
         world = session.world
+        if world.talk is not None and _takes_up(session, action):
+            return InspectScreen(world.talk.item, self)
         if world.over:
             if action.kind in {"confirm", "click"}:
                 from game.app.screens.outcome import OutcomeScreen
