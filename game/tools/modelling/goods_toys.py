@@ -122,7 +122,7 @@ def spinning_top() -> list[Part]:
         *((0.001, 0.0), (0.007, 0.010), (0.013, 0.018), (0.050, 0.038), (0.076, 0.050), (0.081, 0.060), (0.075, 0.069)),
         *((0.040, 0.074), (0.016, 0.078), (0.010, 0.092), (0.011, 0.112), (0.008, 0.119), (0.001, 0.121)),
     ]
-    rest = spun(outline, 44, 46)
+    rest = spun(outline, 36, 34)
     pieces = []
     for colour, border in (("mustard", 0.018), ("cream", 0.030), ("teal", 0.044), ("cream", 0.050), ("red", 0.068)):
         radius = np.hypot(rest.position[:, 0], rest.position[:, 2])

@@ -162,7 +162,7 @@ class Balloons:
     @staticmethod
     def _front(flat: Floats) -> tuple[Floats, Floats]:
         """A little in front of the unit balloon's skin."""
-        depth = np.sqrt(np.maximum(1.05 - (flat**2).sum(1), 0.02))
+        depth = np.sqrt(np.maximum(1.13 - (flat**2).sum(1), 0.02))
         position = np.column_stack([flat, depth])
         return position, position / np.linalg.norm(position, axis=1, keepdims=True)
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
 from game.tools.modelling.fields import Floats
-from game.tools.modelling.goods_shapes import cord, disc, inlay, leaning, spun, tassel, turned
+from game.tools.modelling.goods_shapes import cord, disc, inlay, leaning, turned
 from game.tools.modelling.lofts import lathe, loft, sheet
 from game.tools.modelling.mesh import Mesh, joined, split_at_level
 from game.tools.modelling.parts import Part
@@ -167,9 +167,9 @@ class Noren:
         for k, bottom in enumerate(self.bottoms):
             x0, x1 = float(edges[k]) + 0.004, float(edges[k + 1]) - 0.004
             panel = partial(_panel, x0, x1, _ROD_Y_M, bottom, self.z, float(k))
-            parts = [Part("noren", self.cloth, two_sided(sheet(panel, 16, 14)), None, 0.8)]
-            rim = partial(_panel, x0, x1, bottom + 0.020, bottom + 0.012, self.z + 0.0016, float(k))
-            parts.append(Part("noren_trim", self.trim, sheet(rim, 16, 2), None, 0.0))
+            parts = [Part("noren", self.cloth, two_sided(sheet(panel, 8, 6)), None, 0.8)]
+            rim = partial(_panel, x0, x1, bottom + 0.020, bottom + 0.012, self.z + 0.0030, float(k))
+            parts.append(Part("noren_trim", self.trim, sheet(rim, 8, 2), None, 0.0))
             if k in self.marked:
                 parts += self._mark((x0 + x1) / 2, bottom + 0.095, x1 - x0, k)
             panels.append(Hanging(((x0 + x1) / 2, _ROD_Y_M, self.z), parts))
@@ -185,23 +185,32 @@ class Noren:
             return np.stack([flat[:, 0], flat[:, 1], z], 1), normal
 
         radius = min(0.062, width * 0.3)
-        parts = [
-            Part("mark", self.crest, inlay(disc(x, y, radius, 36), surface, 0.0035, 4), None, 0.0),
-            Part("mark", self.cloth, inlay(disc(x, y, radius * 0.86, 36), surface, 0.0050, 4), None, 0.0),
-        ]
+        parts = [Part("mark", self.crest, _ring(x, y, radius, radius * 0.86, surface, 0.0085), None, 0.0)]
         for k in range(3):
             turn = 90.0 + 120.0 * k
             cx, cy = x + radius * 0.42 * np.cos(np.radians(turn)), y + radius * 0.42 * np.sin(np.radians(turn))
-            leaf = disc(float(cx), float(cy), (radius * 0.40, radius * 0.17), 18, turn)
-            parts.append(Part("mark", self.crest, inlay(leaf, surface, 0.0065, 3), None, 0.0))
+            leaf = disc(float(cx), float(cy), (radius * 0.40, radius * 0.17), 10, turn)
+            parts.append(Part("mark", self.crest, inlay(leaf, surface, 0.0085, 2), None, 0.0))
         return parts
+
+
+def _ring(
+    x: float, y: float, outer: float, inner: float, surface: Callable[[Floats], tuple[Floats, Floats]], lift: float
+) -> Mesh:
+    """A flat ring painted on a surface."""
+    angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    around = np.stack([np.cos(angle), np.sin(angle)], 1)
+    position, normal = surface(np.vstack([around * outer, around * inner]) + (x, y))
+    k, after = np.arange(24), (np.arange(24) + 1) % 24
+    triangle = np.vstack([np.stack([k, after, after + 24], 1), np.stack([k, after + 24, k + 24], 1)])
+    return Mesh(position + normal * lift, normal, triangle)
 
 
 _ROD_Y_M = 1.53
 
 
 def _bulge(x: Floats, v: Floats, panel: float) -> Floats:
-    return np.asarray((0.004 + 0.016 * v) * np.sin(x * 31 + panel * 1.7) + 0.010 * v)
+    return np.asarray((0.004 + 0.016 * v) * np.sin(x * 18 + panel * 1.7) + 0.010 * v)
 
 
 def _panel(x0: float, x1: float, top: float, bottom: float, z: float, k: float, u: Floats, v: Floats) -> Surface:
@@ -231,29 +240,26 @@ class Lanterns:
 
     def _lantern(self, x: float, y: float, z: float) -> list[Part]:
         r, h = self.radius, self.height / 2
-        t = np.linspace(-1.0, 1.0, 31)
-        swell = r * (0.52 + 0.48 * np.sqrt(np.maximum(1 - (t * 0.94) ** 2, 0.0)))
-        body = lathe(np.stack([swell * (1 + 0.018 * np.abs(np.sin(t * np.pi * 5.0))), t * h], 1), 32)
-        lower, glow = split_at_level(body, -(body.position[:, 1] + 0.45 * h))
+        t = np.linspace(-1.0, 1.0, 8)
+        swell = _swell(t) * r
+        sides = 16  # few, and the same for all its parts: what moves is drawn anew in every frame
+        body = lathe(np.stack([swell, t * h], 1), sides)
+        glow, lower = split_at_level(body, body.position[:, 1] - t[2] * h + 1e-6)
         parts = [("paper", self.paper, glow, 0.9), ("paper", self.shadow, lower, 0.9)]
-        for k in range(11):
-            level = (k - 5.0) / 5.0 * 0.985
-            at = r * (0.52 + 0.48 * np.sqrt(1 - (level * 0.94) ** 2))
-            angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
-            ring = np.stack([at * 1.003 * np.sin(angle), np.full(32, level * h), at * 1.003 * np.cos(angle)], 1)
-            parts.append(("rib", self.rib, loft(ring, ring * (1, 0, 1), 0.0016, 0.0013, 3, "round", True), 0.0))
+        for k in range(2, 7):
+            y0 = float(t[k] * h)
+            rib = lathe([(swell[k] + 0.0008, y0 - 0.0013), (swell[k] + 0.0008, y0 + 0.0013)], sides)
+            parts.append(("rib", self.rib, rib, 0.0))
         for sign in (1.0, -1.0):
-            cap = spun(
-                [(r * 0.10, -0.012), (r * 0.62, -0.012), (r * 0.64, 0.0), (r * 0.58, 0.014), (0.004, 0.015)], 24, 9
-            )
+            cap = lathe([(r * 0.62, -0.012), (r * 0.64, 0.002), (r * 0.56, 0.014), (0.004, 0.015)], 12)
             parts.append(("cap", self.cap, leaning(cap, (0 if sign > 0 else 180, 0, 0), (0, sign * h, 0)), 0.9))
-        parts.append(("cord", self.cap, cord([(0, h, 0), (0, h + 0.08, 0.001), (0, h + 0.3, 0)], 0.003, 6), 0.4))
-        threads = leaning(tassel(0.068, 0.013), (0, 0, 0), (0, -h - 0.016, 0))
-        parts.append(("tassel", self.mark, threads, 0.7))
+        parts.append(("cord", self.cap, cord([(0, h, 0), (0, h + 0.3, 0.001)], 0.003, 2, 4), 0.4))
+        threads = lathe([(0.001, -0.068), (0.013, -0.066), (0.009, -0.020), (0.0075, -0.011), (0.0095, 0.0)], 7)
+        parts.append(("tassel", self.mark, leaning(threads, (0, 0, 0), (0, -h - 0.016, 0)), 0.7))
 
         def surface(flat: Floats) -> tuple[Floats, Floats]:
             level = np.clip(flat[:, 1] / h, -1, 1)
-            radius = r * (0.52 + 0.48 * np.sqrt(1 - (level * 0.94) ** 2)) * 1.02
+            radius = r * _swell(level) * 1.02
             angle = flat[:, 0] / r
             normal = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], 1)
             return normal * radius[:, None] + np.stack([angle * 0, flat[:, 1], angle * 0], 1), normal
@@ -261,6 +267,11 @@ class Lanterns:
         for k in range(3):
             turn = 90.0 + 120.0 * k
             cx, cy = 0.40 * r * np.cos(np.radians(turn)), 0.40 * r * np.sin(np.radians(turn))
-            leaf = disc(float(cx), float(cy), (0.36 * r, 0.15 * r), 18, turn)
-            parts.append(("mark", self.mark, inlay(leaf, surface, 0.002, 3), 0.0))
+            leaf = disc(float(cx), float(cy), (0.36 * r, 0.15 * r), 10, turn)
+            parts.append(("mark", self.mark, inlay(leaf, surface, 0.002, 2), 0.0))
         return [Part(name, colour, mesh.placed((x, y, z)), None, outline) for name, colour, mesh, outline in parts]
+
+
+def _swell(level: Floats) -> Floats:
+    """Radius of a lantern's paper, as a share of the largest, at -1 (foot) to 1 (top)."""
+    return np.asarray(0.52 + 0.48 * np.sqrt(np.maximum(1 - (level * 0.94) ** 2, 0.0)))
