@@ -213,7 +213,7 @@ def noh_mask() -> list[Part]:
     paint("lip", "lip_red", np.array(upper), 0.0010, 2)
     paint("lip", "lip_red", np.array(lower), 0.0010, 2)
     # Dark behind the cuts: what one sees through eyes and mouth.
-    lining = solid(offset(face, -0.0085), (-0.07, -0.09, -0.03), (0.07, 0.07, 0.07), 0.006, 320)
+    lining = solid(offset(face, -0.0125), (-0.07, -0.09, -0.03), (0.07, 0.07, 0.07), 0.006, 320)
     items.append(("lining", "ink", lining, 0.0))
     tilt = partial(leaning, degrees=(-14.0, 0.0, 0.0), at=(0.0, 0.148, 0.004))
     parts = [part(name, colour, tilt(mesh), outline) for name, colour, mesh, outline in items]
