@@ -82,15 +82,15 @@ def _views(stage: StageAssets, size: tuple[int, int], faces: bool) -> Iterator[N
         aspect = size[0] / size[1]
         if faces:
             face = load_face(ASSETS / "face")
-            bust = _camera(0.12, head_m + 0.13, 0.60, aspect)
+            bust = _camera(0.12, head_m + 0.16, 0.70, aspect)
             for name in FACES:
                 best = face.search.best(face.search.score_emotion(parse_emotion(f"{name}=1")))
                 chosen = face.model.parts.params(face.search.numbers(best))
                 yield _draw(renderer, show, chosen, bust)
             return
-        top_m = head_m + 0.46
+        top_m = head_m + 0.53
         for k in range(VIEWS):
-            camera = _camera(2.0 * np.pi * k / VIEWS, top_m / 2.0 - 0.01, top_m * 1.14, aspect)
+            camera = _camera(2.0 * np.pi * k / VIEWS, top_m / 2.0 - 0.02, top_m * 1.12, aspect)
             yield _draw(renderer, show, face_params(), camera)
     finally:
         renderer.release()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from game.core import BadInput
-from game.face import DEFAULT_STYLE, FIELDS, DrawList, FaceAsset, face_params, load_face, tessellate
+from game.face import DEFAULT_STYLE, FIELDS, DrawList, FaceAsset, FaceStyle, face_params, load_face, tessellate
 from game.face._brows import brow_lines
 from game.face._eyes import lids
 from game.face._mouth import lips
@@ -127,3 +127,35 @@ def test_wrong_input_is_refused():
         face_params(eye_opne=1.0)
     with pytest.raises(BadInput, match=r"0 to 1\.3"):
         face_params(eye_open=3.0)
+
+
+def test_a_style_ages_and_rests_a_face_and_leaves_the_standard_one_alone():
+    plain = tessellate(face_params())
+    assert np.array_equal(tessellate(face_params(), FaceStyle()).under.position, plain.under.position)
+    old = tessellate(face_params(), FaceStyle(age=0.8))
+    assert len(old.under.triangle) > len(plain.under.triangle)
+    _sound(old)
+    smiling = tessellate(face_params(mouth_corner=9.0), FaceStyle(age=0.8))
+    assert smiling.under.colour.sum() != old.under.colour.sum()
+    stern = tessellate(face_params(), FaceStyle(rest=(("brow_angle", 8.0),)))
+    assert np.array_equal(stern.over.position, tessellate(face_params(brow_angle=8.0)).over.position)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {
+            "eye_scale": 0.98,
+            "eye_height": 0.86,
+            "lash_weight": 0.78,
+            "lash_wing": 0.0,
+            "age": 0.85,
+            "mouth_scale": 0.86,
+        },
+        {"eye_y": -30.0, "nose_scale": 1.5, "brow_weight": 1.95, "mouth_scale": 1.22, "ruddy": 0.75},
+    ],
+)
+def test_every_expression_is_sound_in_every_style(asset, changes):
+    style = FaceStyle(**changes)
+    for name in asset.expressions:
+        _sound(tessellate(asset.expression(name).params, style))

@@ -16,6 +16,7 @@ from game.formats.vrm_model import REQUIRED_BONES
 from game.tools.modelling.character import Character
 from game.tools.modelling.export import LEVELS
 from game.tools.modelling.face_atlas import COLUMNS, EXPRESSIONS, ROWS, cell_of
+from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail
 from game.tools.modelling.spec import load_character
 
@@ -23,7 +24,7 @@ FOLDER = ASSETS / "characters"
 NAMES = sorted(path.stem for path in FOLDER.glob("*.yaml"))
 SWINGING = {
     "mira": {"bow", "scarf", "tuft", "hair"},
-    "genzo": {"cord", "leftSleeve", "rightSleeve", "tuft", "hair"},
+    "genzo": {"cord", "leftSleeve", "rightSleeve", "hair"},
     "daimon": {"leftStrap", "rightStrap", "rag", "tuft", "hair"},
 }
 
@@ -265,6 +266,56 @@ def test_bad_numbers_are_refused_with_their_place(tmp_path):
     slip.write_text(text.replace('"#E9543F"', '"#E9543"'), encoding="utf-8")
     with pytest.raises(BadInput, match="#rrggbb"):
         load_character(slip)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("kind: haori", "kind: kilt", r"coat \| haori \| dungarees.*kilt"),
+        ("  shoe: shoe", "  shoe: boot", "no colours for the material 'boot'"),
+        ("  neck: [1.25, 1.0]", "  neck: [1.25]", "2 numbers"),
+        ("layer: crown, azimuth_deg: [182", "layer: crwon, azimuth_deg: [182", r"fringe \| accent.*crwon"),
+        ("  age: 0.85", "  age: 8.5", "from 0 to 1"),
+        ("eye_flat: 0.22", "eye_flap: 0.22", "did you mean 'eye_flat'"),
+        ("  cord: {stiffness", "  cords: {stiffness", "did you mean 'cord'"),
+    ],
+)
+def test_a_designers_slip_is_one_line_with_its_place(tmp_path, old, new, says):
+    text = (FOLDER / "genzo.yaml").read_text(encoding="utf-8")
+    assert old in text
+    slip = tmp_path / "slip.yaml"
+    slip.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(BadInput, match=rf"slip\.yaml:\d+:\d+.*{says}") as caught:
+        load_character(slip)
+    assert "\n" not in str(caught.value)
+
+
+def test_stretching_keeps_soles_on_the_ground_and_the_body_symmetric(name, character):
+    rig, reference = character.figure.rig, character.rig
+    where = dict(zip(rig.names, rig.position, strict=True))
+    scale = character.spec.proportions.foot
+    assert where["leftFoot"][1] == pytest.approx(reference.position[reference.index["leftFoot"], 1] * scale)
+    for bone, place in where.items():
+        if bone.startswith("left") and "Sleeve" not in bone:
+            np.testing.assert_allclose(where["right" + bone[4:]], place * (-1, 1, 1), atol=1e-9)
+    if name == "mira":
+        assert character.figure.rig is reference
+    for before, after in zip(reference.chains, rig.chains, strict=True):
+        assert before.joints == after.joints
+        assert np.isfinite(after.points).all()
+
+
+def test_clothes_stretch_with_the_body_under_them(character):
+    """What touches at the reference's size touches at the person's: weights, not places, decide."""
+    arm = character.anatomy.arm
+    points = np.array([arm.at(d) for d in np.linspace(0.0, 0.42, 15)])
+    mesh = Mesh(points, np.tile([0.0, 0.0, 1.0], (15, 1)), np.zeros((0, 3), np.int64))
+    moved = character.figure.stretched(mesh, character.binder.rigid(points, "leftLowerArm"))
+    figure = character.figure
+    elbow, wrist = (figure.rig.bind[figure.rig.index[f"left{n}"], :3, 3] for n in ("LowerArm", "Hand"))
+    want = elbow + np.outer((np.linspace(0.0, 0.42, 15) - 0.216) / 0.206, wrist - elbow)
+    np.testing.assert_allclose(moved.position, want, atol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(moved.normal, axis=1), 1.0)
 
 
 def test_the_sleeve_follows_the_arm_and_the_coats_side_stays_with_the_trunk(character):

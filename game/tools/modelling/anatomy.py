@@ -89,10 +89,12 @@ def _trunk(spec: BodySpec) -> Field:
 
 
 def _hand(body: BodySpec, spec: HandSpec, arm: Arm) -> Field:
-    forearm = cone(arm.at(arm.upper_m + 0.034), arm.wrist, body.forearm_elbow, body.forearm_wrist)
+    forearm = cone(arm.at(arm.upper_m + body.forearm_from), arm.wrist, body.forearm_elbow, body.forearm_wrist)
     # It begins inside the rolled cuff: a longer one would show through the bent elbow of the sleeve.
-    # The muscle under the elbow keeps the forearm from being a broom stick.
-    forearm = union(0.03, forearm, ellipsoid(arm.at(arm.upper_m + 0.076, -0.005), (0.042, 0.031, 0.031), arm.axes))
+    if body.forearm_from < 0.06:
+        # The muscle under the elbow keeps the forearm from being a broom stick.
+        muscle = ellipsoid(arm.at(arm.upper_m + 0.076, -0.005), (0.042, 0.031, 0.031), arm.axes)
+        forearm = union(0.03, forearm, muscle)
     palm = union(
         0.02,
         box(arm.in_hand(0.038, -0.001, 0), spec.palm_half, 0.016, arm.axes),

@@ -59,7 +59,7 @@ class Cap:
         root = 0.72 * rz
         z = q[:, 2] - root
         outline = (np.hypot(q[:, 0] / half_width, z / (length + 0.16 * rz)) - 1.0) * length
-        droop = 0.35 * np.clip(z, 0.0, 0.2) + 3.2 * q[:, 0] ** 2
+        droop = 0.14 * np.clip(z, 0.0, 0.2) + 3.2 * q[:, 0] ** 2
         sheet = np.abs(q[:, 1] + 0.25 * ry + 0.8 * self.spec.band * 0.6 + droop) - thick
         return smooth_max(smooth_max(outline, sheet, 0.006), -z - 0.02, 0.01)
 

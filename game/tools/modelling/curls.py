@@ -34,7 +34,10 @@ def curl_meshes(rows: Sequence[CurlSpec], on_scalp: OnScalp, detail: Detail) -> 
             # The lobes of the crown point upward with the skull, not straight sideways as hanging hair does.
             up = np.cos(np.radians(min(max(polar[k], 0.0), 90.0)))
             outward = unit(out[0] * np.sqrt(1.0 - up * up) + np.array([0.0, up, 0.0]))
-            yield _curl(place[0], outward, row.size * (1 + wobble[3]), row.turns, number, detail)
+            # Far away every second curl, a little larger, gives the same outline.
+            if detail.trims or number % 2 == 0:
+                size = row.size * (1 + wobble[3]) * (1.0 if detail.trims else 1.2)
+                yield _curl(place[0], outward, size, row.turns, number, detail)
             number += 1
 
 
@@ -43,10 +46,10 @@ def _curl(at: Floats, outward: Floats, size: float, turns: float, number: int, d
     hand = 1.0 if number % 2 else -1.0
     right = unit(np.cross((0.0, 1.0, 0.0), outward) + 1e-6)
     up = np.cross(outward, right)
-    t = np.linspace(0.0, 1.0, detail.rings(28, 9))
+    t = np.linspace(0.0, 1.0, detail.rings(round(14 * turns), 5))
     angle = hand * 2.0 * np.pi * turns * t + _GOLDEN * number
     radius = size * (0.72 - 0.55 * t)
     path = at + (radius * np.cos(angle))[:, None] * right + (radius * np.sin(angle))[:, None] * up
     path = path + outward * (size * (0.9 * t - 0.35))[:, None]
     thick = size * np.interp(t, [0.0, 0.15, 0.7, 1.0], [0.30, 0.46, 0.38, 0.05])
-    return loft(path, np.tile(outward, (len(t), 1)), thick, thick, detail.sides(9, 4), "round")
+    return loft(path, np.tile(outward, (len(t), 1)), thick, thick, detail.sides(7, 3), "round")

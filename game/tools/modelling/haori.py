@@ -140,7 +140,8 @@ class Haori:
         wrist = arm.upper_m + arm.fore_m
         folds = 0.0018 * np.sin((t - arm.upper_m) * 120 + 1.1 * np.sin(arm.angle_around(p)))
         d = self._under_tube(0.0)(p) + folds * np.exp(-(((t - wrist + 0.07) / 0.06) ** 2))
-        return smooth_max(smooth_max(d, 0.05 - t, 0.01), t - wrist + 0.022, 0.006)
+        # It begins well inside the haori: at the shoulder it would show through the cloth of a lowered arm.
+        return smooth_max(smooth_max(d, 0.125 - t, 0.01), t - wrist + 0.022, 0.006)
 
     def _cuff_field(self, p: Floats) -> Floats:
         t = self.anatomy.arm.distance_along(p)

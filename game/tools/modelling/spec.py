@@ -87,6 +87,8 @@ class BodySpec:
     calf: float
     belly: Vector = (0.0, 0.0, 0.0)
     belly_at: Vector = (0.0, 0.68, 0.0)
+    forearm_from: float = 0.034
+    """Where the bare forearm begins, from the elbow: under long sleeves near the wrist, or it shows when they bend."""
 
 
 @dataclass(frozen=True)
