@@ -90,7 +90,7 @@ def test_meta_expressions_and_look_at_are_declared(vrm):
     assert vrm.authors
     assert vrm.meta["licenseUrl"] == "https://vrm.dev/licenses/1.0/"
     assert set(EXPRESSIONS) == set(vrm.expressions)
-    assert all(vrm.expressions[name].material_binds == 1 for name in EXPRESSIONS)
+    assert all(len(vrm.expressions[name].shifts) == 1 for name in EXPRESSIONS)
     assert [image.mime_type for image in vrm.gltf.images] == ["image/png"]
     assert vrm.look_at is not None
 
