@@ -7,7 +7,7 @@ world of its own. The result is what ``step`` gives, talk by talk.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -27,6 +27,8 @@ __all__ = ["BATCH", "BodyObserver", "Watched"]
 
 Floats = NDArray[np.float64]
 
+NextBeat = Callable[[int, list["Watched"]], TalkState | None]
+
 BATCH = 512
 """Talks whose bodies run side by side."""
 THINKING_TICKS = 61
@@ -45,9 +47,13 @@ SEEN: dict[Mode, tuple[str, ...]] = {
 
 @dataclass(frozen=True)
 class Watched:
-    """One beat as the body played it. units: names in the order in which they came on stage; starts: JSON rows."""
+    """One beat as the body played it. units: names in the order in which they came on stage; starts: JSON rows.
+
+    quiet: those of them that could be seen after the last word, while the player made up their mind.
+    """
 
     units: dict[str, None] = field(default_factory=dict)
+    quiet: dict[str, None] = field(default_factory=dict)
     starts: list[dict[str, Any]] = field(default_factory=list)
 
 
@@ -56,9 +62,9 @@ class _Actor:
     """One talk's body: what of its world changes between lines."""
 
     world: World
-    beats: list[TalkState]
     watched: list[Watched]
     began: int = 0
+    over: bool = False
 
 
 @dataclass(frozen=True)
@@ -84,7 +90,18 @@ class BodyObserver:
 
         -> per episode and decision what was seen until the next one.
         """
-        return _Bodies(self, StepAssets(assets, self.planner), talks, seed, first).run()
+
+        def recorded(row: int, seen: list[Watched]) -> TalkState | None:
+            return talks[row][len(seen)] if len(seen) < len(talks[row]) else None
+
+        return self.play(assets, len(talks), recorded, seed, first)
+
+    def play(self, assets: TalkAssets, count: int, beat: NextBeat, seed: int, first: int = 0) -> list[list[Watched]]:
+        """``count`` talks whose beats are told one by one, each when what came before it has been seen.
+
+        beat: (row, all that was seen of that talk so far) -> the state whose lines are spoken next, None at the end.
+        """
+        return _Bodies(self, StepAssets(assets, self.planner), count, beat, seed, first).run()
 
 
 class _Bodies:
@@ -94,17 +111,16 @@ class _Bodies:
         self,
         observer: BodyObserver,
         assets: StepAssets,
-        talks: Sequence[Sequence[TalkState]],
+        count: int,
+        beat: NextBeat,
         seed: int,
         first: int,
     ) -> None:
         self.observer, self.assets, self.planner = observer, assets, observer.planner
-        n, library = len(talks), observer.planner.library
+        self.beat = beat
+        n, library = count, observer.planner.library
         seeds = [(seed * 1_000_003 + first + i) & 0x7FFFFFFF for i in range(n)]
-        self.actors = [
-            _Actor(new_world(assets, s, text_speed="fast"), list(talk), [])
-            for s, talk in zip(seeds, talks, strict=True)
-        ]
+        self.actors = [_Actor(new_world(assets, s, text_speed="fast"), []) for s in seeds]
         keys = [actor.world.body.planner.key for actor in self.actors]
         self.state: PlannerState = self.planner.start(n, seed).renewed(key=np.concatenate(keys))
         self.felt, self.shown = np.zeros((n, 6)), np.zeros((n, 6))
@@ -123,10 +139,7 @@ class _Bodies:
 
     def run(self) -> list[list[Watched]]:
         """Tick until every talk has had its last beat."""
-        live = [row for row, actor in enumerate(self.actors) if actor.beats]
-        for row in live:
-            self._next_beat(row, 0)
-        tick, left = 0, len(live)
+        tick, left = 0, sum(self._next_beat(row, 0) for row in range(len(self.actors)))
         while left:
             time_s = tick * TICK_S
             for row in np.flatnonzero(self.due_s < time_s).tolist():
@@ -143,17 +156,17 @@ class _Bodies:
             for row in np.flatnonzero(self.over_tick <= tick).tolist():
                 if not self._next_beat(row, tick):
                     left -= 1
-                    self.over_tick[row], self.due_s[row] = NEVER, np.inf
         return [actor.watched for actor in self.actors]
 
     def _next_beat(self, row: int, tick: int) -> bool:
         """The decision falls: what it led to is said from this tick on. False after the last one."""
         actor = self.actors[row]
-        at = len(actor.watched)
-        if at == len(actor.beats):
+        talk = self.beat(row, actor.watched)
+        if talk is None:
+            actor.over = True
+            self.over_tick[row], self.due_s[row] = NEVER, np.inf
             return False
-        talk = actor.beats[at]
-        if at == 0:
+        if not actor.watched:
             actor.world = enter_talk(self.assets, actor.world, talk)
         else:
             actor.world = replace(actor.world, talk=talk, queue=talk.beat.lines)
@@ -191,8 +204,17 @@ class _Bodies:
             self.due_s[row] = -np.inf
         else:
             self.due_s[row] = np.inf
+            self._all_said(row)
             self.over_tick[row] = min(tick + THINKING_TICKS, actor.began + MAX_TICKS)
         self.cue_row, self.cue_column, self.cue_s = rows, columns, times_s
+
+    def _all_said(self, row: int) -> None:
+        """The last word is spoken: what is on stage now stays to be seen."""
+        library, seen = self.planner.library, self.actors[row].watched[-1]
+        for at, unit in enumerate(self.state.decisions.unit[row].tolist()):
+            if unit >= 0 and self.seen[at] and not library.is_rest[unit]:
+                seen.units[library.units[unit].name] = None
+                seen.quiet[library.units[unit].name] = None
 
     def _words(self, emotion: Floats, time_s: float) -> Floats:
         """(N, G) word factors, as GestureCues.factors gives them row by row."""
@@ -219,7 +241,7 @@ class _Bodies:
             reasons = dict(zip(rows.tolist(), self.planner.explain_chosen(before, signal, rows), strict=True))
         for row in {*rows.tolist(), *self.fresh}:
             actor = self.actors[row]
-            if self.over_tick[row] == NEVER:
+            if actor.over:
                 continue  # the talk is over, its body merely goes on
             watched = actor.watched[-1]
             for at in range(len(self.layers)):
@@ -227,6 +249,8 @@ class _Bodies:
                 if unit < 0 or library.is_rest[unit] or not self.seen[at] or not (actor.began == tick or new[row, at]):
                     continue
                 watched.units[library.units[unit].name] = None
+                if self.due_s[row] == np.inf:
+                    watched.quiet[library.units[unit].name] = None
                 if new[row, at] and row in reasons:
                     chosen = reasons[row][at]
                     watched.starts.append(

@@ -1,0 +1,1 @@
+"""Play many talks without a window."""

@@ -1,0 +1,234 @@
+"""Own policies: a Python file that answers one function, run in a process of its own with hard limits.
+
+The file says what it wants to see and answers with a choice::
+
+    SEES = "body"                      # table, words, face, body, reader or oracle
+
+    def move(view, memory, rng):
+        if "fist" in [name for layer, name in view["quiet"]]:
+            return {"choice": "wait"}
+        return {"choice": view["table"]["lines"][0]["id"], "offer": 900}
+
+``view`` is plain data (``game.app.policies.views``), ``memory`` a dict that lasts for one talk, ``rng`` a seeded
+``random.Random``. What this guards against and what not stands in docs/autoplay.md: it stops mistakes (endless
+loops, lost memory, written files), it is no wall against somebody who means harm.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import json
+import os
+import random
+import select
+import subprocess
+import sys
+import tempfile
+import weakref
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from game.app.policies.views import Table, View
+from game.app.talk import Choice
+from game.core.errors import BadInput, Where
+from game.formats.files import decode_utf8, read_bytes
+
+__all__ = ["ALLOWED_IMPORTS", "OwnPolicy"]
+
+ALLOWED_IMPORTS = ("collections", "dataclasses", "functools", "itertools", "math", "statistics")
+VIEWS = ("table", "words", "face", "body", "reader", "oracle")
+MOVE_S = 5.0
+"""A single move may take so long …"""
+CPU_S = 600
+"""… and all of them together so much of a processor …"""
+MEMORY_BYTES = 512 * 1024 * 1024
+"""… and so much memory."""
+_MAX_BYTES = 200_000
+_MAX_ANSWER = 10_000
+_FORBIDDEN = ("open", "exec", "eval", "compile", "input", "breakpoint", "globals", "locals", "vars", "getattr",
+              "setattr", "delattr", "type", "object", "memoryview", "help", "exit", "quit")  # fmt: skip
+
+
+class OwnPolicy:
+    """A checked file; ``sit`` starts its process at the first talk and keeps it."""
+
+    def __init__(self, path: Path, source: str, sees: str) -> None:
+        self.path, self.source, self.sees = path, source, sees
+        self._process: _Process | None = None
+
+    @staticmethod
+    def load(path: Path) -> OwnPolicy:
+        """Check a file without running it. Raises BadInput with the line that is not allowed."""
+        if not path.is_file():
+            raise BadInput("policy", expected="a Python file that exists", seen=str(path))
+        source = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="policy"), path)
+        try:
+            tree = ast.parse(source, str(path))
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            line = error.lineno if isinstance(error, SyntaxError) else None
+            raise BadInput("policy", where=Where(str(path), line), expected="Python", seen=str(error)) from None
+        sees, moves = "", False
+        for node in ast.walk(tree):
+            _check(node, path)
+        for statement in tree.body:
+            if isinstance(statement, ast.Assign) and [ast.unparse(target) for target in statement.targets] == ["SEES"]:
+                sees = statement.value.value if isinstance(statement.value, ast.Constant) else ""
+            moves |= isinstance(statement, ast.FunctionDef) and statement.name == "move"
+        if sees not in VIEWS:
+            raise BadInput("policy SEES", where=Where(str(path)), expected=" | ".join(VIEWS), seen=sees or "none")
+        if not moves:
+            raise BadInput("policy", where=Where(str(path)), expected="def move(view, memory, rng)", seen="none")
+        return OwnPolicy(path, source, sees)
+
+    def sit(self, rng: random.Random) -> _OwnPlayer:
+        """A new talk."""
+        if self._process is None:
+            self._process = _Process(self.path, self.source)
+        self._process.send({"seed": rng.getrandbits(48)})
+        return _OwnPlayer(self._process)
+
+
+def _check(node: ast.AST, path: Path) -> None:
+    wrong = ""
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
+        if getattr(node, "level", 0) or any(name not in ALLOWED_IMPORTS for name in names):
+            wrong = f"import of {', '.join(names)} (allowed: {', '.join(ALLOWED_IMPORTS)})"
+    elif isinstance(node, ast.Attribute) and node.attr.startswith("_"):
+        wrong = f"the attribute {node.attr}"
+    elif isinstance(node, ast.Name) and (node.id.startswith("__") or node.id in _FORBIDDEN):
+        wrong = f"the name {node.id}"
+    elif isinstance(node, ast.Attribute) and node.attr in {"format", "format_map", "gi_frame", "f_globals", "tb_frame"}:
+        wrong = f"the attribute {node.attr} (use f-strings)"
+    if wrong:
+        place = Where(str(path), getattr(node, "lineno", None), getattr(node, "col_offset", 0) + 1)
+        raise BadInput("not allowed in a policy", where=place, seen=wrong)
+
+
+@dataclass
+class _OwnPlayer:
+    process: _Process
+
+    def move(self, view: View) -> Choice:
+        """Ask the file."""
+        kind = asdict(view)
+        answer = self.process.ask({"table": kind} if isinstance(view, Table) else kind)
+        choice, offer = answer.get("choice"), answer.get("offer")
+        if not isinstance(choice, str) or not (offer is None or type(offer) is int):
+            raise BadInput(f"policy {self.process.path}", expected='{"choice": ID, "offer": whole number or None}',
+                           seen=json.dumps(answer)[:80])  # fmt: skip
+        return Choice(choice, offer)
+
+
+class _Process:
+    """The file's process: plain data in and out, nothing inherited but its source."""
+
+    def __init__(self, path: Path, source: str) -> None:
+        self.path = path
+        self.folder = tempfile.TemporaryDirectory(prefix="mcg-policy-")
+        self.popen = subprocess.Popen(
+            [sys.executable, "-I", "-S", "-c", _WORKER],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+            cwd=self.folder.name, env={"PYTHONHASHSEED": "0"}, start_new_session=True,
+        )  # fmt: skip
+        self._end = weakref.finalize(self, _kill, self.popen, self.folder)
+        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES, "imports": ALLOWED_IMPORTS})
+
+    def send(self, message: dict[str, Any]) -> None:
+        """One line to the file's process."""
+        assert self.popen.stdin is not None
+        try:
+            self.popen.stdin.write(json.dumps(message).encode() + b"\n")
+            self.popen.stdin.flush()
+        except BrokenPipeError:
+            raise self._gone() from None
+
+    def ask(self, view: dict[str, Any]) -> dict[str, Any]:
+        """One move. Raises BadInput where the file fails, is too slow or says nothing of use."""
+        self.send({"view": view})
+        assert self.popen.stdout is not None
+        line = b""
+        while not line.endswith(b"\n"):
+            ready, _, _ = select.select([self.popen.stdout], [], [], MOVE_S)
+            part = os.read(self.popen.stdout.fileno(), _MAX_ANSWER) if ready else b""
+            line += part
+            if not part or len(line) > _MAX_ANSWER:
+                slow = not ready
+                self._end()
+                raise self._slow() if slow else self._gone()
+        answer = json.loads(line)
+        if "error" in answer:
+            raise BadInput(f"policy {self.path}", expected="a move", seen=answer["error"])
+        return dict(answer)
+
+    def _slow(self) -> BadInput:
+        return BadInput(f"policy {self.path}", expected=f"a move within {MOVE_S:g} s", seen="none")
+
+    def _gone(self) -> BadInput:
+        limits = f"{MEMORY_BYTES // 2**20} MiB and {CPU_S} s of a processor"
+        return BadInput(f"policy {self.path}", expected=f"a policy that keeps within {limits}", seen="its end")
+
+
+def _kill(popen: subprocess.Popen[bytes], folder: tempfile.TemporaryDirectory[str]) -> None:
+    popen.kill()
+    popen.wait()
+    for pipe in (popen.stdin, popen.stdout):
+        if pipe is not None:
+            with contextlib.suppress(OSError):
+                pipe.close()
+    folder.cleanup()
+
+
+_WORKER = r"""
+import builtins, json, random, sys
+
+def main():
+    first = json.loads(sys.stdin.readline())
+    for name in first["imports"]:
+        __import__(name)
+    allowed = set(first["imports"])
+    try:
+        import resource
+        for what, limit in (("RLIMIT_CPU", first["cpu_s"]), ("RLIMIT_AS", first["memory"]), ("RLIMIT_FSIZE", 0),
+                            ("RLIMIT_NOFILE", 3), ("RLIMIT_NPROC", 0), ("RLIMIT_CORE", 0)):
+            if hasattr(resource, what):
+                try:
+                    resource.setrlimit(getattr(resource, what), (limit, limit))
+                except (ValueError, OSError):
+                    pass
+    except ImportError:
+        pass
+    real = builtins.__import__
+    def limited(name, globals=None, locals=None, fromlist=(), level=0):
+        if level or name not in allowed:
+            raise ImportError(name)
+        return real(name, globals, locals, fromlist, level)
+    away = {"open", "exec", "eval", "compile", "input", "breakpoint", "globals", "locals", "vars", "getattr",
+            "setattr", "delattr", "type", "object", "memoryview", "help", "exit", "quit", "print"}
+    safe = {name: value for name, value in vars(builtins).items() if name not in away and name[0] != "_"}
+    safe |= {"__import__": limited, "__build_class__": builtins.__build_class__}
+    space = {"__builtins__": safe, "__name__": "policy"}
+    answer = lambda data: (sys.stdout.write(json.dumps(data) + "\n"), sys.stdout.flush())
+    broken = None
+    try:
+        exec(compile(first["source"], "policy", "exec"), space)
+    except Exception as error:
+        broken = f"{type(error).__name__}: {error}"
+    memory, rng = {}, random.Random(0)
+    for line in sys.stdin:
+        message = json.loads(line)
+        if "seed" in message:
+            memory, rng = {}, random.Random(message["seed"])
+            continue
+        if broken:
+            answer({"error": broken[:200]})
+            continue
+        try:
+            answer(dict(space["move"](message["view"], memory, rng)))
+        except Exception as error:
+            answer({"error": f"{type(error).__name__}: {error}"[:200]})
+
+main()
+"""
