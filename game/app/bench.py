@@ -67,23 +67,25 @@ def autoplay(inkjs: Path | None = None) -> list[Row]:
     inkjs: a folder where ``npm install inkjs`` was run, to measure it beside ours on the same talk.
     """
     from game.app import bench_talk
-    from game.app.autoplay import play_episode
+    from game.app.autoplay import play_with_bodies
     from game.app.body import BATCH, BodyObserver
     from game.app.content import load_talk_assets, stall_path
-    from game.app.policies import POLICIES
+    from game.app.policies import seat
 
     assets = load_talk_assets(stall_path("flea"))
     rows = bench_talk.rows(inkjs)
 
-    def with_bodies(observer: BodyObserver) -> float:
+    def with_bodies(observer: BodyObserver, policy: str) -> float:
         start = time.perf_counter()
-        played = [[move[1] for move in play_episode(assets, POLICIES["random"], 1, i)] for i in range(BATCH)]
-        observer.watch(assets, played, 1)
+        player = seat(assets, policy, library=observer.planner.library)
+        play_with_bodies(observer, [player] * BATCH, 1, 0)
         return BATCH / (time.perf_counter() - start)
 
     observer = BodyObserver.load(explain=False)
-    rates = [with_bodies(observer) for _ in range(2)]
-    rows.append(row("autoplay: with the planner at 30 Hz, episodes/s", rates, unit="/s", more_is_better=True))
+    for policy in ("random", "reader"):
+        rates = [with_bodies(observer, policy) for _ in range(2)]
+        name = f"autoplay: with the planner at 30 Hz, {policy}, episodes/s"
+        rows.append(row(name, rates, unit="/s", more_is_better=True))
     return rows
 
 

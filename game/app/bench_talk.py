@@ -11,7 +11,7 @@ from pathlib import Path
 from game.app.autoplay import play_episode
 from game.app.bench_rows import Row, row
 from game.app.content import load_talk_assets, stall_path
-from game.app.policies import POLICIES
+from game.app.policies import seat
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
 from game.story import Chose, Script, Start, advance, begin, load_script
@@ -91,9 +91,10 @@ def rows(inkjs: Path | None) -> list[Row]:
     assets = load_talk_assets(stall_path("flea"))
     for policy in ("random", "oracle"):
         per_choice, per_talk = [], []
+        player = seat(assets, policy)
         for repeat in range(REPEATS):
             begun = time.perf_counter()
-            talks = [list(play_episode(assets, POLICIES[policy], 1, repeat * TALKS + i)) for i in range(TALKS)]
+            talks = [list(play_episode(player, 1, repeat * TALKS + i)) for i in range(TALKS)]
             seconds = time.perf_counter() - begun
             per_choice.append(sum(map(len, talks)) / seconds)
             per_talk.append(TALKS / seconds)

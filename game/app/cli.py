@@ -15,7 +15,7 @@ __all__ = ["COMMANDS", "main"]
 # name -> module with ``add_arguments(parser)`` and ``run(args) -> int``, and the line shown in the overview.
 COMMANDS: dict[str, tuple[str, str]] = {
     "play": ("game.app.play", "play the game in a window (what run_game.py alone does)"),
-    "autoplay": ("game.app.autoplay", "play many games without a window, with a policy, into a log"),
+    "autoplay": ("game.app.autoplay.command", "play many games without a window, with a policy, into a log"),
     "snapshot": ("game.app.snapshot", "draw one picture without a display"),
     "film": ("game.app.film", "draw a strip or a sequence of pictures without a display"),
     "turntable": ("game.app.turntable", "draw a person from all sides, or their seven faces"),

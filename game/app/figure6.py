@@ -14,20 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import Mode
-from game.app.policies import Policy, oracle_policy
+from game.app.policies import money
 from game.app.step import StepAssets, new_world, step
 from game.app.studio import Studio
-from game.app.talk import Choice, TalkAssets, TalkState, choose, start_talk
+from game.app.talk import Choice, TalkAssets, TalkState, ask_money, choose, start_talk
 from game.app.ui import FEELING_COLOURS, INK, PALETTE, Canvas, Rect, fade
 from game.app.world import Intent, World, enter_talk
 from game.core.emotion_space import EMOTIONS, with_neutral
 from game.core.errors import BadInput
-from game.emotion import appraise
+from game.emotion import appraise, felt_label
 from game.render import Camera, FontSet
 
 __all__ = [
-    "COLUMNS", "ROWS", "SIZE_PX", "draw_figure6", "film_talk", "insulting_policy", "moments_of", "moves_of",
-    "play_moves",
+    "COLUMNS", "ROWS", "SIZE_PX", "draw_figure6", "film_talk", "insulting_policy", "listening_policy", "moments_of",
+    "moves_of", "play_moves",
 ]  # fmt: skip
 
 Pixels = NDArray[np.uint8]
@@ -63,7 +63,31 @@ SIZE_PX = (500, 440)
 CAMERA = Camera((-0.09, 1.17, 2.85), (-0.09, 0.98, 0.0), 14.4)
 """She stands right of the middle and leaves the left to the overlays."""
 SIDE_PX = 60
+Policy = Callable[[TalkAssets, TalkState, np.random.Generator], Choice]
 _PAPER = np.array([250, 244, 232], dtype=np.float64)
+
+
+def listening_policy(assets: TalkAssets, state: TalkState, rng: np.random.Generator) -> Choice:
+    """The good player: answers what is felt with a line that will be taken well, and raises in small steps."""
+    worth = {"right": 2.0, "neutral": 1.0, "wrong": 0.0}
+    best, best_score = None, -1.0
+    for option in state.beat.choices:
+        if not option.available or option.act in {"offer", "leave"}:
+            continue
+        score = worth[appraise(assets.feelings, assets.person, state.feeling, option.act)]
+        score += 0.01 * float(rng.random()) - (0.3 if option.act in {"wait", "press"} else 0.0)
+        if score > best_score:
+            best, best_score = option, score
+    if best is None:
+        best = next(option for option in state.beat.choices if option.act == "leave")
+    ask = ask_money(state.list_price, state.bargain.ask)
+    last = state.bargain.round >= assets.market.rounds - 1 or state.bargain.patience < 2.0
+    if last and state.purse >= ask:
+        return Choice(best.id, ask)
+    if felt_label(assets.feelings, state.feeling) == "disgust":
+        return Choice(best.id)
+    opening = 0.5 if state.bargain.offer == 0 else state.bargain.offer + 0.06
+    return Choice(best.id, money(opening * state.list_price, min(ask, state.purse)))
 
 
 def insulting_policy(assets: TalkAssets, state: TalkState, rng: np.random.Generator) -> Choice:
@@ -180,7 +204,7 @@ def draw_figure6(studio: Studio, seed: int, item: str) -> Pixels:
     talk, language = studio.session.assets.talk, studio.session.settings.language
     labels, fonts = LABELS[language], FontSet.for_language(language)
     moves = {
-        "success": moves_of(talk, item, seed, oracle_policy),
+        "success": moves_of(talk, item, seed, listening_policy),
         "failure": moves_of(talk, item, seed, insulting_policy),
     }
     studio.draw_over, studio.camera = _draw_state, CAMERA

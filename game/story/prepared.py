@@ -51,8 +51,9 @@ class Prepared:
     every talk about the item (the amount of an offer is left open); whoever fills words in keeps them here.
     """
 
-    def __init__(self, script: Script, item: str) -> None:
-        self.script, self.item = script, item
+    def __init__(self, script: Script, item: str, *, settle: bool = True) -> None:
+        """settle: leave out what the item rules out; without, every condition is asked in the talk."""
+        self.script, self.item, self.settle = script, item, settle
         self._says: dict[tuple[str, str], tuple[ReadySay, ...]] = {}
         self._groups: dict[str, tuple[Group, ...]] = {}
         self.spoken: dict[str, Spoken] = {}
@@ -115,7 +116,7 @@ class Prepared:
         """None or False for a condition that the item alone decides, else what has to be asked."""
         if condition is None:
             return None
-        if condition.visits or not condition.names <= {"item"} or len(condition.seen) > _MOST_SEEN:
+        if not self.settle or condition.visits or not condition.names <= {"item"} or len(condition.seen) > _MOST_SEEN:
             return condition.evaluate
         names, seen = {"item": self.item}, sorted(condition.seen)
         told = itertools.chain.from_iterable(itertools.combinations(seen, n) for n in range(len(seen) + 1))

@@ -12,9 +12,8 @@ import pytest
 
 from game.app.cli import build_parser, main
 from game.app.content import load_talk_assets, stall_path
-from game.app.figure6 import COLUMNS, ROWS, film_talk, insulting_policy, moments_of, moves_of
+from game.app.figure6 import COLUMNS, ROWS, film_talk, insulting_policy, listening_policy, moments_of, moves_of
 from game.app.loading import load_step_assets
-from game.app.policies import oracle_policy
 from game.app.step import new_world
 from game.app.studio import Studio
 from game.app.talk import TalkState, choose, start_talk
@@ -29,7 +28,7 @@ def pixels(path: Path) -> np.ndarray:
 
 def play(policy_name: str) -> TalkState:
     assets = load_talk_assets(stall_path("flea"))
-    policy = {"good": oracle_policy, "bad": insulting_policy}[policy_name]
+    policy = {"good": listening_policy, "bad": insulting_policy}[policy_name]
     state = start_talk(assets, ITEM, SEED, purse=int(assets.script.items[ITEM].list_price * 1.5))
     for move in moves_of(assets, ITEM, SEED, policy):
         state = choose(assets, state, move)
@@ -64,7 +63,7 @@ def studio() -> Iterator[Studio]:
 def test_the_rows_show_the_same_moments_and_differ_in_what_is_acted(studio: Studio) -> None:
     assets = studio.session.assets
     moves = {
-        "success": moves_of(assets.talk, ITEM, SEED, oracle_policy),
+        "success": moves_of(assets.talk, ITEM, SEED, listening_policy),
         "failure": moves_of(assets.talk, ITEM, SEED, insulting_policy),
     }
     begun = new_world(assets, SEED)

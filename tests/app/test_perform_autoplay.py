@@ -13,7 +13,7 @@ from game.app.autoplay import play_episode
 from game.app.body import MAX_TICKS, PATIENCE_S, THINKING_TICKS, BodyObserver
 from game.app.cli import main
 from game.app.content import load_talk_assets, stall_path
-from game.app.policies import POLICIES
+from game.app.policies import seat
 from game.app.step import StepAssets, new_world, step
 from game.app.talk import TalkAssets, TalkState
 from game.app.world import Intent, enter_talk
@@ -33,7 +33,7 @@ def observer() -> BodyObserver:
 
 def talks(assets: TalkAssets, count: int, moves: int) -> list[list[TalkState]]:
     return [
-        [after for _, after, _, _ in play_episode(assets, POLICIES["oracle"], SEED, episode)][:moves]
+        [decision.after for decision in play_episode(seat(assets, "oracle"), SEED, episode)][:moves]
         for episode in range(count)
     ]
 

@@ -75,9 +75,7 @@ def play_episode(seat: Seat, seed: int, episode: int) -> Iterator[Decision]:
         yield talk.decisions[-1]
 
 
-def play_with_bodies(
-    observer: BodyObserver, seats: Sequence[Seat], seed: int, first: int
-) -> list[list[Decision]]:
+def play_with_bodies(observer: BodyObserver, seats: Sequence[Seat], seed: int, first: int) -> list[list[Decision]]:
     """Episodes from ``first`` on, one for each seat, their bodies side by side: every player sees the body of its own
     talk from the greeting to the moment of its choice."""
     talks = [sit_down(seat, seed, first + at) for at, seat in enumerate(seats)]

@@ -88,16 +88,14 @@ def search(
     observer: BodyObserver | None = None,
     bank: SignBank | None = None,
     tuned: Tuned | None = None,
-    tell: Callable[[int, float], None] = lambda done, best: None,
+    tell: Callable[[int], None] = lambda talks: None,
 ) -> Found:
     """Climb from what is known. bank: what bodies show, for policies that look at them."""
     tuned = tuned or load_tuned()
     temperament = assets.person.id
     rng = random.Random(f"search {policy} {temperament} {seed}")
     library = None if observer is None else observer.planner.library
-    start: Strategy | FixedPlan = (
-        tuned.plan(temperament) if policy == "fixed" else tuned.strategy(policy, temperament)
-    )
+    start: Strategy | FixedPlan = tuned.plan(temperament) if policy == "fixed" else tuned.strategy(policy, temperament)
     place = seat(assets, policy, library=library, tuned=tuned, strategy=start)
 
     def worth(strategy: Strategy | FixedPlan, of_seed: int, count: int) -> float:
@@ -110,7 +108,7 @@ def search(
         found = worth(tried, TRAIN_SEED, episodes)
         if found > best_worth:
             best, best_worth = tried, found
-        tell(done + 1, best_worth)
+        tell(1)
     before, after = worth(start, CHECK_SEED, 2 * episodes), worth(best, CHECK_SEED, 2 * episodes)
     if after < before:
         best, after = start, before
@@ -147,5 +145,3 @@ def _other_plan(plan: FixedPlan, rng: random.Random, far: bool) -> FixedPlan:
     else:
         gap = round(min(max(gap + rng.gauss(0.0, 0.04), -0.02), 0.3), 3)
     return FixedPlan(tuple(order), opened, tuple(raises), left, gap)
-
-

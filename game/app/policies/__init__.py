@@ -4,9 +4,9 @@ from game.app.policies.beliefs import Acquaintance, Belief, BodyReading, FaceRea
 from game.app.policies.custom import OwnPolicy
 from game.app.policies.eyes import Eyes, FaceEye
 from game.app.policies.players import Player
-from game.app.policies.registry import NAMES, TUNED, Mixture, Seat, Tuned, load_tuned, mixture_of, seat, tuned_with
+from game.app.policies.registry import NAMES, TUNED, Mixture, Seat, Tuned, load_tuned, mixture_of, seat, seat_exists
 from game.app.policies.scripted import load_moves
-from game.app.policies.strategy import FixedPlan, Strategy
+from game.app.policies.strategy import FixedPlan, Strategy, money
 from game.app.policies.views import (
     BodyView,
     FaceView,
@@ -47,6 +47,7 @@ __all__ = [
     "load_moves",
     "load_tuned",
     "mixture_of",
+    "money",
     "seat",
-    "tuned_with",
+    "seat_exists",
 ]

@@ -114,20 +114,19 @@ class Belief:
 
 @dataclass(frozen=True)
 class FaceReading:
-    """Likelihood of a drawn face by felt label, from faces the same model draws for each label.
+    """Likelihood of a drawn face by felt label, from the faces that the same model draws for each label.
 
-    mask: how much of the face the reader takes for politeness; 0 takes every face at its word.
+    exemplars: by what a mask hides behind (joy, neutral), by label, for a few strengths.
     """
 
-    exemplars: tuple[tuple[tuple[Drawn, ...], ...], ...]  # [mask hides behind joy, neutral][label][strength]
+    exemplars: tuple[tuple[tuple[Drawn, ...], ...], ...]
 
     SPREAD = 0.13
     OTHER_PART = 0.35
 
     @staticmethod
-    def of(known: Acquaintance, eye: FaceEye, mask: float) -> FaceReading:
-        """Learn the faces of a person who masks so much."""
-        shares = known.person.mask
+    def of(known: Acquaintance, eye: FaceEye, *, masked: bool) -> FaceReading:
+        """Learn the faces that go with feelings; masked: behind the mask that this person wears."""
         per_mask = []
         for shows in (2, 6):
             labels = []
@@ -135,8 +134,7 @@ class FaceReading:
                 drawn = []
                 for strength in _STRENGTHS if label < 6 else (0.0,):
                     six = known.feeling(label, strength).six
-                    if mask > 0.0:
-                        assert shares == mask
+                    if masked:
                         shown = shown_values(known.person, Feeling(six, shows))
                     else:
                         shown = (*six, 0.0)

@@ -19,12 +19,12 @@ from __future__ import annotations
 import ast
 import contextlib
 import json
-import os
+import queue
 import random
-import select
 import subprocess
 import sys
 import tempfile
+import threading
 import weakref
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -74,7 +74,7 @@ class OwnPolicy:
             _check(node, path)
         for statement in tree.body:
             if isinstance(statement, ast.Assign) and [ast.unparse(target) for target in statement.targets] == ["SEES"]:
-                sees = statement.value.value if isinstance(statement.value, ast.Constant) else ""
+                sees = str(statement.value.value) if isinstance(statement.value, ast.Constant) else ""
             moves |= isinstance(statement, ast.FunctionDef) and statement.name == "move"
         if sees not in VIEWS:
             raise BadInput("policy SEES", where=Where(str(path)), expected=" | ".join(VIEWS), seen=sees or "none")
@@ -104,7 +104,7 @@ def _check(node: ast.AST, path: Path) -> None:
         wrong = f"the attribute {node.attr} (use f-strings)"
     if wrong:
         place = Where(str(path), getattr(node, "lineno", None), getattr(node, "col_offset", 0) + 1)
-        raise BadInput("not allowed in a policy", where=place, seen=wrong)
+        raise BadInput(f"{wrong} is not allowed in a policy", where=place)
 
 
 @dataclass
@@ -134,6 +134,8 @@ class _Process:
             cwd=self.folder.name, env={"PYTHONHASHSEED": "0"}, start_new_session=True,
         )  # fmt: skip
         self._end = weakref.finalize(self, _kill, self.popen, self.folder)
+        self.answers: queue.Queue[bytes] = queue.Queue()
+        threading.Thread(target=_listen, args=(self.popen, self.answers), daemon=True).start()
         self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES, "imports": ALLOWED_IMPORTS})
 
     def send(self, message: dict[str, Any]) -> None:
@@ -148,36 +150,41 @@ class _Process:
     def ask(self, view: dict[str, Any]) -> dict[str, Any]:
         """One move. Raises BadInput where the file fails, is too slow or says nothing of use."""
         self.send({"view": view})
-        assert self.popen.stdout is not None
-        line = b""
-        while not line.endswith(b"\n"):
-            ready, _, _ = select.select([self.popen.stdout], [], [], MOVE_S)
-            part = os.read(self.popen.stdout.fileno(), _MAX_ANSWER) if ready else b""
-            line += part
-            if not part or len(line) > _MAX_ANSWER:
-                slow = not ready
-                self._end()
-                raise self._slow() if slow else self._gone()
+        try:
+            line = self.answers.get(timeout=MOVE_S)
+        except queue.Empty:
+            self._end()
+            raise BadInput(f"policy {self.path}", expected=f"a move within {MOVE_S:g} s", seen="none") from None
+        if not line.endswith(b"\n"):
+            self._end()
+            raise self._gone()
         answer = json.loads(line)
         if "error" in answer:
             raise BadInput(f"policy {self.path}", expected="a move", seen=answer["error"])
         return dict(answer)
-
-    def _slow(self) -> BadInput:
-        return BadInput(f"policy {self.path}", expected=f"a move within {MOVE_S:g} s", seen="none")
 
     def _gone(self) -> BadInput:
         limits = f"{MEMORY_BYTES // 2**20} MiB and {CPU_S} s of a processor"
         return BadInput(f"policy {self.path}", expected=f"a policy that keeps within {limits}", seen="its end")
 
 
+def _listen(popen: subprocess.Popen[bytes], answers: queue.Queue[bytes]) -> None:
+    """Answers as they come; an empty or broken one is the last."""
+    assert popen.stdout is not None
+    with contextlib.suppress(OSError, ValueError), popen.stdout:
+        while True:
+            line = popen.stdout.readline(_MAX_ANSWER)
+            answers.put(line)
+            if not line.endswith(b"\n"):
+                return
+
+
 def _kill(popen: subprocess.Popen[bytes], folder: tempfile.TemporaryDirectory[str]) -> None:
     popen.kill()
     popen.wait()
-    for pipe in (popen.stdin, popen.stdout):
-        if pipe is not None:
-            with contextlib.suppress(OSError):
-                pipe.close()
+    if popen.stdin is not None:
+        with contextlib.suppress(OSError):
+            popen.stdin.close()
     folder.cleanup()
 
 

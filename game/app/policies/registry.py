@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -30,7 +30,7 @@ from game.core.paths import ASSETS
 from game.embos import UnitLibrary
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["NAMES", "TUNED", "Mixture", "Seat", "Tuned", "load_tuned", "mixture_of", "seat"]
+__all__ = ["NAMES", "TUNED", "Mixture", "Seat", "Tuned", "load_tuned", "mixture_of", "seat", "seat_exists"]
 
 NAMES: Mapping[str, str] = {
     "random": "table",
@@ -107,6 +107,17 @@ class Seat:
         return Eyes(self.assets, self.layers)
 
 
+def seat_exists(name: str) -> None:
+    """Raises BadInput for a name that no policy has, or a file that is none."""
+    if name.startswith("script:"):
+        load_moves(Path(name.removeprefix("script:")))
+    elif name.endswith(".py"):
+        OwnPolicy.load(Path(name))
+    elif name not in NAMES:
+        wanted = " | ".join([*NAMES, "script:FILE", "FILE.py"])
+        raise BadInput("--policy", expected=wanted, seen=name, hint=nearest(name, NAMES))
+
+
 def seat(
     assets: TalkAssets,
     name: str,
@@ -128,13 +139,7 @@ def seat(
     if name.endswith(".py"):
         own = OwnPolicy.load(Path(name))
         return Seat(name, own.sees, assets, own.sit, layers)
-    if name not in NAMES:
-        raise BadInput(
-            "policy",
-            expected=" | ".join([*NAMES, "script:FILE", "FILE.py"]),
-            seen=name,
-            hint=nearest(name, NAMES),
-        )
+    seat_exists(name)
     if name == "random":
         return Seat(name, "table", assets, RandomPlayer)
     tuned = tuned or load_tuned()
@@ -147,8 +152,7 @@ def seat(
     made = Seat(name, NAMES[name], assets, lambda rng: _BELIEVERS[name](reading, rng), layers)
     if name in {"face", "reader"}:
         # A face taken at its word, or one that is known to be a mask.
-        mask = assets.person.mask if name == "reader" else 0.0
-        reading.face = FaceReading.of(known, made.eyes.face_eye, mask)
+        reading.face = FaceReading.of(known, made.eyes.face_eye, masked=name == "reader")
     if made.bodies:
         if library is None:
             raise BadInput(f"policy {name}", expected="bodies to look at", seen="none")
@@ -197,11 +201,3 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-def tuned_with(tuned: Tuned, policy: str, temperament: str, found: Strategy | FixedPlan) -> Tuned:
-    """The findings with one more."""
-    if isinstance(found, FixedPlan):
-        return replace(tuned, fixed={**tuned.fixed, temperament: found})
-    of = {**tuned.strategies.get(policy, {}), temperament: found}
-    return replace(tuned, strategies={**tuned.strategies, policy: of})

@@ -1,0 +1,163 @@
+"""Where jobs run: here, in processes, or on a Dask cluster, all behind the interface of concurrent.futures."""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from game.app.autoplay.jobs import Job, Result, work
+from game.core.errors import BadInput
+
+__all__ = ["ATTEMPTS", "Crew", "workers_of"]
+
+ATTEMPTS = 3
+"""So often a job is given out before a dying worker counts as the job's fault."""
+_AHEAD = 3
+"""Jobs given out per worker: enough that none waits, few enough that results never pile up."""
+_LOOK_S = 0.25
+
+
+def workers_of(text: str) -> int:
+    """``auto`` or a number. Raises BadInput otherwise."""
+    if text == "auto":
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if text.isdigit() and 1 <= int(text) <= 1024:
+        return int(text)
+    raise BadInput("--workers", expected="auto or a number from 1 to 1024", seen=text)
+
+
+def _begin_worker() -> None:
+    # Ctrl-C is for the one who hands out the work; one thread of arithmetic per worker.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _processes(workers: int) -> Executor:
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    # Never a plain fork: what this process holds (threads, GL) must not be copied. A fork server reads the code once.
+    known = multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if "forkserver" in known else "spawn")
+    if "forkserver" in known:
+        context.set_forkserver_preload(["game.app.autoplay.jobs"])
+    return ProcessPoolExecutor(workers, context, initializer=_begin_worker)
+
+
+def _dask(address: str, workers: int) -> tuple[Executor, int, Callable[[], None]]:
+    try:
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError:
+        hint = "pip install 'mental-communication-game[cluster]'"
+        raise BadInput("--dask", expected="the package distributed", seen="none", hint=hint) from None
+    cluster: Any = None
+    try:
+        if address == "local":
+            cluster = distributed.LocalCluster(
+                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
+            )
+            client = distributed.Client(cluster)
+        else:
+            client = distributed.Client(address, timeout="20s")
+    except (OSError, ValueError, TimeoutError) as error:
+        raise BadInput("--dask", expected="a scheduler that answers, or local", seen=f"{address}: {error}") from None
+
+    def close() -> None:
+        client.close()
+        if cluster is not None:
+            cluster.close()
+
+    return client.get_executor(pure=False), max(len(client.scheduler_info()["workers"]), 1), close
+
+
+@dataclass
+class Crew:
+    """Hands out jobs and gives back results as they come, whatever dies meanwhile."""
+
+    workers: int = 1
+    dask: str = ""
+    task: Callable[[Job], Result] = work
+    reborn: int = 0
+    _executor: Executor | None = field(default=None, repr=False)
+    _close: Callable[[], None] | None = field(default=None, repr=False)
+
+    def results(self, jobs: Iterator[Job]) -> Generator[Result, None, None]:
+        """Results in the order in which they are done. The jobs of a worker that died are done again."""
+        if not self.dask and self.workers == 1:
+            for job in jobs:
+                yield self.task(job)
+            return
+        self._start()
+        pending: dict[Future[Result], Job] = {}
+        tries: dict[int, int] = {}
+        again: list[Job] = []
+        more = True
+        try:
+            while more or pending or again:
+                while len(pending) < self.workers * _AHEAD and (again or more):
+                    given = again.pop(0) if again else next(jobs, None)
+                    if given is None:
+                        more = False
+                        break
+                    job = given
+                    tries[job.number] = tries.get(job.number, 0) + 1
+                    if tries[job.number] > ATTEMPTS:
+                        raise BadInput(
+                            f"episodes {job.first} to {job.first + job.count - 1}",
+                            expected="workers that live", seen=f"{ATTEMPTS} that died over them",
+                        )  # fmt: skip
+                    pending[self._submit(job)] = job
+                done, _ = wait(pending, timeout=_LOOK_S, return_when=FIRST_COMPLETED)
+                lost = False
+                for future in done:
+                    job = pending.pop(future)
+                    try:
+                        yield future.result()
+                        tries.pop(job.number, None)
+                    except BrokenExecutor:
+                        again.append(job)
+                        lost = True
+                    except Exception as error:
+                        if type(error).__name__ != "KilledWorker":
+                            raise
+                        again.append(job)
+                if lost:
+                    # One process gone breaks the pool: all that was given out is given out again.
+                    again.extend(pending.values())
+                    again.sort(key=lambda job: job.number)
+                    pending.clear()
+                    self.reborn += 1
+                    self._stop()
+                    self._start()
+        finally:
+            for future in pending:
+                future.cancel()
+            self._stop()
+
+    def _submit(self, job: Job) -> Future[Result]:
+        assert self._executor is not None
+        try:
+            return self._executor.submit(self.task, job)
+        except BrokenExecutor:
+            broken: Future[Result] = Future()
+            broken.set_exception(BrokenExecutor())
+            return broken
+
+    def _start(self) -> None:
+        if self.dask:
+            self._executor, self.workers, self._close = _dask(self.dask, self.workers)
+        else:
+            self._executor = _processes(self.workers)
+
+    def _stop(self) -> None:
+        if self._executor is not None:
+            with suppress(Exception):
+                self._executor.shutdown(wait=not self.dask, cancel_futures=True)
+        if self._close is not None:
+            self._close()
+        self._executor = self._close = None

@@ -1,0 +1,146 @@
+"""A piece of work for a worker process: some episodes of one population at one stall, and what came of them."""
+
+from __future__ import annotations
+
+import gzip
+import random
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import lru_cache
+from threading import get_ident
+from typing import Any
+
+from game.animation import Mode
+from game.app.autoplay.episodes import Decision, play_episode, play_with_bodies
+from game.app.autoplay.rows import log_lines
+from game.app.autoplay.tally import Coverage, Tally
+from game.app.autoplay.tracing import ConditionTrace
+from game.app.body import BodyObserver
+from game.app.content import load_talk_assets, stall_path
+from game.app.policies import Seat, mixture_of, seat
+from game.app.talk import TalkAssets
+from game.core.errors import BadInput
+from game.emotion import shown_values
+
+__all__ = ["BODIES_PER_JOB", "TALKS_PER_JOB", "Job", "Result", "needs_bodies", "work"]
+
+TALKS_PER_JOB = 100
+BODIES_PER_JOB = 256
+"""Bodies are cheapest side by side."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """Everything a worker has to know. stall: name or path; population: a mixture of policies as text.
+
+    log: whether rows are wanted, ``plain`` or ``gzip``; cover: whether every condition is listened to.
+    """
+
+    number: int
+    stall: str
+    population: str
+    seed: int
+    first: int
+    count: int
+    bodies: bool = False
+    mode: Mode = "full"
+    log: str = ""
+    cover: bool = False
+
+
+@dataclass
+class Result:
+    """What a job gives back: by policy what was counted, what was covered, and the rows of the log."""
+
+    number: int
+    tallies: dict[str, Tally] = field(default_factory=dict)
+    coverage: Coverage = field(default_factory=Coverage)
+    rows: bytes = b""
+
+
+def needs_bodies(population: str) -> bool:
+    """Whether some policy of a population looks at bodies."""
+    return any(
+        name in {"body", "reader"} or (name.endswith(".py") and _own_looks_at_bodies(name))
+        for name, _ in mixture_of(population).shares
+    )
+
+
+def _own_looks_at_bodies(name: str) -> bool:
+    from pathlib import Path
+
+    from game.app.policies import OwnPolicy
+
+    return OwnPolicy.load(Path(name)).sees in {"body", "reader"}
+
+
+# A worker reads what it needs once, each of its threads for itself; what a job gives depends on the job alone.
+@lru_cache(maxsize=8)
+def _assets(stall: str, cover: bool, thread: int) -> tuple[TalkAssets, ConditionTrace | None]:
+    assets = load_talk_assets(stall_path(stall))
+    return assets, ConditionTrace(assets.script) if cover else None
+
+
+@lru_cache(maxsize=4)
+def _observer(mode: Mode, explain: bool, thread: int) -> BodyObserver:
+    return BodyObserver.load(mode, explain=explain)
+
+
+@lru_cache(maxsize=32)
+def _seat(stall: str, policy: str, cover: bool, bodies: bool, thread: int) -> Seat:
+    library = _observer("full", False, thread).planner.library if bodies else None
+    return seat(_assets(stall, cover, thread)[0], policy, library=library)
+
+
+def _players(job: Job) -> list[Seat]:
+    mixture = mixture_of(job.population)
+    names = [
+        mixture.draw(random.Random(f"who {job.seed} {episode}").random())
+        for episode in range(job.first, job.first + job.count)
+    ]
+    return [_seat(job.stall, name, job.cover, job.bodies, get_ident()) for name in names]
+
+
+def _talks(job: Job, players: list[Seat]) -> Iterator[list[Decision]]:
+    if job.bodies:
+        observer = _observer(job.mode, bool(job.log), get_ident())
+        for first in range(0, job.count, BODIES_PER_JOB):
+            seats = players[first : first + BODIES_PER_JOB]
+            yield from play_with_bodies(observer, seats, job.seed, job.first + first)
+    else:
+        for at, player in enumerate(players):
+            yield list(play_episode(player, job.seed, job.first + at))
+
+
+def work(job: Job) -> Result:
+    """Play the episodes of a job. Raises BadInput for content that cannot be played to an end."""
+    result, rows = Result(job.number), []
+    _, trace = _assets(job.stall, job.cover, get_ident())
+    if trace is not None:
+        trace.take()
+    players = _players(job)
+    for at, (player, decisions) in enumerate(zip(players, _talks(job, players), strict=True)):
+        if not decisions:
+            raise BadInput(
+                f"episode {job.first + at}", expected="at least one decision", seen="a talk that ends at once"
+            )
+        result.tallies.setdefault(player.name, Tally()).add(decisions)
+        result.coverage.add(decisions)
+        if job.bodies:
+            _cover_faces(player, decisions, result.coverage)
+        if job.log:
+            mode = job.mode if job.bodies else None
+            rows.append(log_lines(player.assets.script.stall, player.name, job.first + at, decisions, mode))
+    if trace is not None:
+        result.coverage.conditions = trace.take()
+    data = "".join(rows).encode()
+    result.rows = gzip.compress(data, 6, mtime=0) if job.log == "gzip" else data
+    return result
+
+
+def _cover_faces(player: Seat, decisions: list[Decision], coverage: Coverage) -> None:
+    """Which parts of the face were drawn for what was shown."""
+    for decision in decisions:
+        shown: tuple[Any, ...] = shown_values(player.assets.person, decision.after.feeling)
+        parts, _, _ = player.eyes.face_eye.drawn(shown)
+        coverage.parts.update(parts)
