@@ -128,7 +128,7 @@ def _write_reports(done: Run, findings: list[Any], args: argparse.Namespace) -> 
 
         write_junit(args.junit, done, findings)
     if args.report is not None or args.plots is not None:
-        from game.app.autoplay.report import write_plots, write_report
+        from game.tools.reports import write_plots, write_report
 
         if args.plots is not None:
             write_plots(args.plots, done)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import multiprocessing
 import os
 import signal
@@ -10,7 +9,6 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any
 
 from game.app.autoplay.jobs import Job, Result, work
 from game.core.errors import BadInput
@@ -47,32 +45,6 @@ def _processes(workers: int) -> Executor:
     if "forkserver" in known:
         context.set_forkserver_preload(["game.app.autoplay.jobs"])
     return ProcessPoolExecutor(workers, context, initializer=_begin_worker)
-
-
-def _dask(address: str, workers: int) -> tuple[Executor, int, Callable[[], None]]:
-    try:
-        distributed: Any = importlib.import_module("distributed")
-    except ImportError:
-        hint = "pip install 'mental-communication-game[cluster]'"
-        raise BadInput("--dask", expected="the package distributed", seen="none", hint=hint) from None
-    cluster: Any = None
-    try:
-        if address == "local":
-            cluster = distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None
-            )
-            client = distributed.Client(cluster)
-        else:
-            client = distributed.Client(address, timeout="20s")
-    except (OSError, ValueError, TimeoutError) as error:
-        raise BadInput("--dask", expected="a scheduler that answers, or local", seen=f"{address}: {error}") from None
-
-    def close() -> None:
-        client.close()
-        if cluster is not None:
-            cluster.close()
-
-    return client.get_executor(pure=False), max(len(client.scheduler_info()["workers"]), 1), close
 
 
 @dataclass
@@ -150,7 +122,9 @@ class Crew:
 
     def _start(self) -> None:
         if self.dask:
-            self._executor, self.workers, self._close = _dask(self.dask, self.workers)
+            from game.tools.cluster import dask_executor
+
+            self._executor, self.workers, self._close = dask_executor(self.dask, self.workers)
         else:
             self._executor = _processes(self.workers)
 

@@ -8,13 +8,13 @@ from html import escape
 from pathlib import Path
 
 from game.app.autoplay.coverage import Reached, covered
-from game.app.autoplay.plots import PLOTS, figure_svg, load_matplotlib, tallies_of
 from game.app.autoplay.requirements import Finding
 from game.app.autoplay.runs import Run
 from game.app.autoplay.tally import Tally
 from game.app.content import load_talk_assets, stall_path
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
+from game.tools.reports.plots import PLOTS, figure_svg, load_matplotlib, tallies_of
 
 __all__ = ["write_plots", "write_report"]
 
