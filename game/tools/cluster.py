@@ -21,11 +21,12 @@ def dask_executor(address: str, workers: int) -> tuple[Executor, int, Callable[[
     except ImportError:
         hint = "pip install 'mental-communication-game[cluster]'"
         raise BadInput("--dask", expected="the package distributed", seen="none", hint=hint) from None
+    dask: Any = distributed
     cluster: Any = None
     try:
         if address == "local":
-            cluster = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
-        client: Any = distributed.Client(cluster or address, timeout="20s")
+            cluster = dask.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        client: Any = dask.Client(cluster or address, timeout="20s")
     except (OSError, ValueError, TimeoutError) as error:
         raise BadInput("--dask", expected="a scheduler that answers, or local", seen=f"{address}: {error}") from None
 
