@@ -15,6 +15,7 @@ from game.app.autoplay.episodes import Decision, play_episode, play_with_bodies
 from game.app.autoplay.rows import log_lines
 from game.app.autoplay.tally import Coverage, Tally
 from game.app.autoplay.tracing import ConditionTrace
+from game.app.autoplay.visits import habits_of
 from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import Seat, mixture_of, seat
@@ -88,8 +89,12 @@ def _observer(mode: Mode, explain: bool, thread: int) -> BodyObserver:
 
 @lru_cache(maxsize=32)
 def _seat(stall: str, policy: str, cover: bool, bodies: bool, thread: int) -> Seat:
-    library = _observer("full", False, thread).planner.library if bodies else None
-    return seat(_assets(stall, cover, thread)[0], policy, library=library)
+    assets = _assets(stall, cover, thread)[0]
+    if not bodies:
+        return seat(assets, policy)
+    observer = _observer("full", False, thread)
+    habit = habits_of(assets, observer) if policy == "reader" else None
+    return seat(assets, policy, library=observer.planner.library, habit=habit)
 
 
 def _players(job: Job) -> list[Seat]:
