@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from game.app.autoplay import play_episode
+from game.app.autoplay import play_episode, play_with_bodies
 from game.app.body import MAX_TICKS, PATIENCE_S, THINKING_TICKS, BodyObserver
 from game.app.cli import main
 from game.app.content import load_talk_assets, stall_path
@@ -120,3 +120,21 @@ def test_the_log_tells_why_and_is_the_same_for_the_same_seed(tmp_path: Path, cap
         assert {k: v for k, v in row.items() if k not in {"mode", "units", "starts"}} == without
     assert np.isfinite([start["time_s"] for start in starts]).all()
     capsys.readouterr()
+
+
+@pytest.mark.parametrize("policy", ["random", "body", "reader"])
+def test_players_see_the_body_of_their_own_talk_from_the_greeting_on(
+    assets: TalkAssets, observer: BodyObserver, policy: str
+) -> None:
+    """… whoever sits beside them."""
+    place = seat(assets, policy, library=observer.planner.library)
+    together = play_with_bodies(observer, [place] * 3, SEED, 0)
+    for talk in together:
+        for at, decision in enumerate(talk):
+            assert decision.seen is not None
+            assert decision.shown is not None
+            assert set(decision.seen.quiet) <= set(decision.seen.units)
+            assert at == 0 or decision.seen is talk[at - 1].shown
+        assert talk[-1].after.ended
+    alone = play_with_bodies(observer, [place], SEED, 2)
+    assert [(d.choice, d.seen, d.shown) for d in alone[0]] == [(d.choice, d.seen, d.shown) for d in together[2]]

@@ -135,17 +135,17 @@ def seat(
     layers = {} if library is None else {unit.name: unit.layer for unit in library.units}
     if name.startswith("script:"):
         moves = load_moves(Path(name.removeprefix("script:")))
-        return Seat(name, "table", assets, lambda rng: ScriptedPlayer(moves))
+        return Seat(name, "table", assets, lambda rng: ScriptedPlayer(moves), layers)
     if name.endswith(".py"):
         own = OwnPolicy.load(Path(name))
         return Seat(name, own.sees, assets, own.sit, layers)
     seat_exists(name)
     if name == "random":
-        return Seat(name, "table", assets, RandomPlayer)
+        return Seat(name, "table", assets, RandomPlayer, layers)
     tuned = tuned or load_tuned()
     if name == "fixed":
         plan = strategy if isinstance(strategy, FixedPlan) else tuned.plan(assets.person.id)
-        return Seat(name, "table", assets, lambda rng: FixedPlayer(plan))
+        return Seat(name, "table", assets, lambda rng: FixedPlayer(plan), layers)
     known = Acquaintance(assets)
     chosen = strategy if isinstance(strategy, Strategy) else tuned.strategy(name, assets.person.id)
     reading = Reading(known, assets.market, chosen)
