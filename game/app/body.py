@@ -38,6 +38,8 @@ PATIENCE_S = 0.4
 NEVER = 2**62
 MAX_TICKS = 3000
 """A beat that is longer than this is broken off."""
+CROWDED = 0.8
+"""Where fewer than this share of the bodies still have a talk, the others are left out."""
 SEEN: dict[Mode, tuple[str, ...]] = {
     "full": ("posture", "gesture", "mannerism"), "body": ("posture", "gesture", "mannerism"),
     "gestures": ("gesture",), "face": (),
@@ -59,8 +61,9 @@ class Watched:
 
 @dataclass
 class _Actor:
-    """One talk's body: what of its world changes between lines."""
+    """One talk's body: what of its world changes between lines. number: of the talk, whatever its row is by now."""
 
+    number: int
     world: World
     watched: list[Watched]
     began: int = 0
@@ -120,7 +123,8 @@ class _Bodies:
         self.beat = beat
         n, library = count, observer.planner.library
         seeds = [(seed * 1_000_003 + first + i) & 0x7FFFFFFF for i in range(n)]
-        self.actors = [_Actor(new_world(assets, s, text_speed="fast"), []) for s in seeds]
+        self.actors = [_Actor(i, new_world(assets, s, text_speed="fast"), []) for i, s in enumerate(seeds)]
+        self.talks = list(self.actors)
         keys = [actor.world.body.planner.key for actor in self.actors]
         self.state: PlannerState = self.planner.start(n, seed).renewed(key=np.concatenate(keys))
         self.felt, self.shown = np.zeros((n, 6)), np.zeros((n, 6))
@@ -156,12 +160,28 @@ class _Bodies:
             for row in np.flatnonzero(self.over_tick <= tick).tolist():
                 if not self._next_beat(row, tick):
                     left -= 1
-        return [actor.watched for actor in self.actors]
+            if left < CROWDED * len(self.actors):
+                self._close_ranks()
+        return [actor.watched for actor in self.talks]
+
+    def _close_ranks(self) -> None:
+        """Bodies whose talk is over leave; the others go on as before."""
+        live = np.array([row for row, actor in enumerate(self.actors) if not actor.over], dtype=np.intp)
+        place = np.full(len(self.actors), -1, dtype=np.intp)
+        place[live] = np.arange(len(live))
+        self.actors = [self.actors[row] for row in live]
+        self.fresh = [int(place[row]) for row in self.fresh]
+        for name in ("felt", "shown", "felt_target", "shown_target", "burst_s", "due_s", "over_tick"):
+            setattr(self, name, getattr(self, name)[live])
+        cued = place[self.cue_row] >= 0
+        self.cue_row, self.cue_column = place[self.cue_row[cued]], self.cue_column[cued]
+        self.cue_s = self.cue_s[cued]
+        self.state = self.state.of(live)
 
     def _next_beat(self, row: int, tick: int) -> bool:
         """The decision falls: what it led to is said from this tick on. False after the last one."""
         actor = self.actors[row]
-        talk = self.beat(row, actor.watched)
+        talk = self.beat(actor.number, actor.watched)
         if talk is None:
             actor.over = True
             self.over_tick[row], self.due_s[row] = NEVER, np.inf

@@ -12,6 +12,7 @@ The window, headless autoplay, snapshot and film all call this same step with th
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,13 +131,19 @@ def _settle(assets: StepAssets, world: World) -> World:
 def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
     factor = TEXT_SPEED[world.text_speed]
     speed = CHARS_PER_S[world.language] * (1.0 if factor is None else factor)
-    timed = TimedText(line.text(world.language), world.language, speed)
+    timed = _timed(line.text(world.language), world.language, speed)
     cues, visemes, start_s = None, None, world.time_s
     if line.speaker == "shopkeeper":
         cues, start_s = _cues(assets, world, timed, line.gesture)
         if assets.face is not None:
             visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
     return Speech(line, timed, start_s, cues, visemes, hurried=factor is None)
+
+
+@lru_cache(maxsize=1024)
+def _timed(text: str, language: str, chars_per_s: float) -> TimedText:
+    """A line in time; the same lines are spoken again and again."""
+    return TimedText(text, language, chars_per_s)
 
 
 def _cues(assets: StepAssets, world: World, timed: TimedText, named: str | None = None) -> tuple[GestureCues, float]:

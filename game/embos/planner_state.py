@@ -93,6 +93,12 @@ class PlannerState:
         """A state with some fields replaced (dataclasses.replace, without its overhead)."""
         return PlannerState(**{**vars(self), **changes})
 
+    def of(self, rows: Ints) -> PlannerState:
+        """Some of the characters, in the order of ``rows``; each goes on as it would have among all."""
+        kept = {name: value[rows] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        decisions = Decisions(**{name: value[rows] for name, value in vars(self.decisions).items()})
+        return PlannerState(**kept, soonest_s=float(kept["next_s"].min(initial=np.inf)), decisions=decisions)
+
 
 @dataclass(frozen=True, eq=False)
 class Factors:
