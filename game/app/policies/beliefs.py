@@ -160,10 +160,13 @@ class FaceReading:
 class BodyReading:
     """Likelihood of units by felt label from the repertoire's intensities (eq. 2), by Bayes' rule.
 
+    Nobody feels one thing alone: what is not the felt emotion is neutral (eq. 4), and bodies show that too.
     habit: by unit, the share of its appearances that has nothing to do with feelings, learnt from earlier visits.
     """
 
     FLOOR = 0.06
+    STRENGTH = 0.5
+    """How much of somebody's emotion the felt label makes up, typically."""
 
     def __init__(self, library: UnitLibrary, habit: Mapping[str, float] | None = None) -> None:
         layers = np.array([unit.layer for unit in library.units])
@@ -172,6 +175,7 @@ class BodyReading:
         for layer in sorted(set(layers.tolist())):
             rows = np.flatnonzero(layers == layer)
             share = weights[rows] / weights[rows].sum(axis=0)
+            share = self.STRENGTH * share + (1.0 - self.STRENGTH) * share[:, 6:]
             for row, own in zip(rows.tolist(), share, strict=True):
                 name = library.units[row].name
                 constant = (habit or {}).get(name, 0.0)
