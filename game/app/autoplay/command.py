@@ -97,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
         from game.app.autoplay.search_command import run_search
 
         return run_search(args, stalls)
-    from game.app.autoplay.requirements import judge, load_requirements
+    from game.app.autoplay.requirements import check_played, judge, load_requirements
 
     requirements = None if args.require is None else load_requirements(args.require)
     judged = any(x is not None for x in (args.report, args.plots, args.junit, args.require))
@@ -105,6 +105,8 @@ def run(args: argparse.Namespace) -> int:
         stalls, _populations(args.policy or ["random"]), args.episodes, args.seed, args.body, args.mode,
         "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged,
     )  # fmt: skip
+    if requirements is not None:
+        check_played(requirements, plan.populations)
     crew = Crew(workers_of(args.workers), args.dask)
     bar = partial(Progress, show=True if args.progress else None)
     done = play(plan, crew, out=args.out, resume=args.resume, progress=bar)

@@ -14,7 +14,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,7 +24,7 @@ from game.app.autoplay.tally import Interval, Tally
 from game.core.errors import BadInput
 from game.formats.yaml_source import Node, load_yaml
 
-__all__ = ["Finding", "Requirement", "Requirements", "judge", "load_requirements"]
+__all__ = ["Finding", "Requirement", "Requirements", "check_played", "judge", "load_requirements"]
 
 
 @dataclass(frozen=True)
@@ -113,18 +113,21 @@ def _requirement(node: Node) -> Requirement:
     return made
 
 
+def check_played(requirements: Requirements, populations: Sequence[str]) -> None:
+    """Raises BadInput for a policy that is spoken of and will not be played: before anything is."""
+    for requirement in requirements.balance:
+        for name in (requirement.policy, *requirement.others()):
+            if name not in populations:
+                raise BadInput(
+                    requirement.where, expected=" | ".join(populations), seen=name, hint=f"play it too: --policy {name}"
+                )
+
+
 def judge(run: Run, requirements: Requirements | None) -> list[Finding]:
-    """Every requirement at every stall it speaks of. Raises BadInput for a policy or stall that was not played."""
+    """Every requirement at every stall it speaks of."""
     if requirements is None or not run.talks:
         return []
     found: list[Finding] = []
-    for requirement in requirements.balance:
-        for name in (requirement.policy, *requirement.others()):
-            if name not in run.plan.populations:
-                raise BadInput(
-                    requirement.where, expected=" | ".join(run.plan.populations), seen=name,
-                    hint=f"play it too: --policy {name}",
-                )  # fmt: skip
     for stall in run.plan.stalls:
         reached = covered(run, stall) if requirements.coverage else {}
         found += [_cover(stall, kind, least, where, reached) for kind, (least, where) in requirements.coverage.items()]
