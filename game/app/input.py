@@ -14,6 +14,7 @@ class Action:
     """kind: up down left right confirm back pointer click release wheel key resize quit focus_lost.
 
     at: device pixels for pointer, click, release. key: a character or function key's name. amount: wheel notches.
+    move, held: device pixels since the last event, and the button that is down: "", left or middle (pointer).
     fast: whether shift is held (larger steps).
     """
 
@@ -22,6 +23,8 @@ class Action:
     key: str = ""
     amount: int = 0
     fast: bool = False
+    move: tuple[float, float] = (0.0, 0.0)
+    held: str = ""
 
 
 _KEYS = {
@@ -48,7 +51,11 @@ def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | N
             return Action(_KEYS[event.key], fast=fast)
         return Action("key", key=pygame.key.name(event.key).lower(), fast=fast)
     if event.type == pygame.MOUSEMOTION:
-        return Action("pointer", at=_scaled(event.pos, pixel_ratio))
+        down = getattr(event, "buttons", (0, 0, 0))
+        held = "left" if down[0] else "middle" if down[1] else ""
+        fast = bool(held and pygame.key.get_mods() & pygame.KMOD_SHIFT)
+        move = _scaled(getattr(event, "rel", (0, 0)), pixel_ratio)
+        return Action("pointer", at=_scaled(event.pos, pixel_ratio), move=move, held=held, fast=fast)
     if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
         return Action("click", at=_scaled(event.pos, pixel_ratio))
     if event.type == pygame.MOUSEBUTTONUP and event.button == 1:

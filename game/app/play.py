@@ -8,9 +8,9 @@ examples:
   run_game.py play --stall flea --at deal_fair --item vase
 
 keys in a talk: 1-4 say a line, O put an offer with it, left/right the amount (shift: larger steps), P the asking
-price, B only the offer, W wait, G go; space or a click goes on; F1 feelings, F2 active nodes, F3 networks, F11 full
-screen, Esc back. F4 opens the designer's inspector: sliders, variables, back to the last choice. A dialogue file that
-is edited while it is played is read anew; the talk goes on where it stood.
+price, B only the offer, W wait, G go; space or a click goes on; F1 feelings, F2 active nodes, F3 networks, F8 frame
+times, F9 photo mode, F11 full screen, Esc back. F4 opens the designer's inspector: sliders, variables, back to the
+last choice. A dialogue file that is edited while it is played is read anew; the talk goes on where it stood.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _choose_level(window: Window, settings: Settings) -> None:
     if settings.quality != "auto":
-        window.renderer.set_level(level_named(settings.quality))
+        window.set_quality(level_named(settings.quality), fixed=True)
         return
 
     def draw(level: Level) -> None:
@@ -66,7 +66,7 @@ def _choose_level(window: Window, settings: Settings) -> None:
         window.draw()
         window.device.context.finish()
 
-    window.renderer.set_level(pick_level(draw))
+    window.set_quality(pick_level(draw), fixed=False)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -161,6 +161,7 @@ def _loop(window: Window) -> None:
         session.world = replace_speed(session.world, session.settings.text_speed)
         now = time.perf_counter()
         window.advance(now - before)
+        window.note_frame((now - before) * 1e3)
         before = now
         window.draw()
         pygame.display.flip()

@@ -12,7 +12,8 @@ import argparse
 from pathlib import Path
 
 from game.app.arguments import parse_size
-from game.app.studio import Studio, add_studio_arguments, check_png, write_png
+from game.app.pictures import check_png, write_png
+from game.app.studio import Studio, add_studio_arguments
 from game.core.errors import BadInput
 
 __all__ = ["add_arguments", "run"]

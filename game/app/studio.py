@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import os
-import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pygame
 from numpy.typing import NDArray
 
 from game.animation import Mode
@@ -27,12 +23,10 @@ from game.app.step import new_world, step
 from game.app.strings import load_strings
 from game.app.ui import PALETTE, Canvas, Rect
 from game.app.world import TICK_S, Intent, World
-from game.core.errors import BadInput, Where
 from game.render import CLOSEUP, DESIGN_SHARE, LEVELS, Camera, Device, FontSet, Hud, Renderer, level_named
-from game.render.assets import save_png
 from game.story import Spoken
 
-__all__ = ["CAMERAS", "Studio", "add_studio_arguments", "check_png", "write_png"]
+__all__ = ["CAMERAS", "Studio", "add_studio_arguments"]
 
 CAMERAS: dict[str, Camera] = {
     "hero": SHOTS["home"],
@@ -181,26 +175,3 @@ class Studio:
             width = canvas.measure(self._label, size, "bold") + size
             canvas.panel(Rect(size / 2, size / 2, width, size * 1.5), PALETTE["paper"], radius=size / 2)
             canvas.text(size, size * 0.6, self._label, size, font="bold")
-
-
-def check_png(path: Path) -> None:
-    """Refuse a place no picture can be written to, before anything is drawn. Raises BadInput."""
-    if path.suffix.lower() != ".png":
-        raise BadInput("--out", expected="a file name ending in .png", seen=str(path))
-    if not path.resolve().parent.is_dir():
-        raise BadInput("--out", expected="a folder that exists", seen=str(path.parent))
-
-
-def write_png(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Write (h, w, 3) uint8 as a PNG, whole or not at all. Raises BadInput where that is impossible."""
-    check_png(path)
-    folder = path.resolve().parent
-    handle, name = tempfile.mkstemp(dir=folder, prefix=f".{path.stem}.", suffix=".png")
-    os.close(handle)
-    try:
-        save_png(Path(name), pixels)
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except (OSError, pygame.error) as error:
-        os.unlink(name)
-        raise BadInput(where=Where(path), expected="a folder that can be written", seen=str(error)) from None

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 from game.animation import Pose
 from game.app.arguments import parse_size
 from game.app.film import sheet
+from game.app.pictures import check_png, write_png
 from game.app.stage import StageAssets, StageShow, load_stage
-from game.app.studio import check_png, write_png
 from game.core import quaternion as quat
 from game.core.emotion_space import parse_emotion
 from game.core.errors import BadInput, MissingPart, Where

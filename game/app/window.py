@@ -11,8 +11,11 @@ from game.app.input import Action
 from game.app.market import read_stage
 from game.app.opening import AUTOSAVE, take_up
 from game.app.overlays.inspector import Inspector
+from game.app.overlays.timings import FRAMES_SHOWN, draw_timings
 from game.app.passersby import Known, Passersby, load_cast
+from game.app.photo import PhotoMode, fine_factor, photo_folder, photo_path, smaller
 from game.app.picking import Picker
+from game.app.pictures import write_png
 from game.app.saves import SavedGame, save_game
 from game.app.screens import InspectScreen, TalkScreen, TitleScreen
 from game.app.session import Screen, Session
@@ -22,7 +25,21 @@ from game.app.step import step
 from game.app.ui import Canvas
 from game.app.world import TICK_S, Intent
 from game.core.errors import BadInput
-from game.render import DEFAULT, DESIGN_SHARE, Device, FontSet, Hud, ItemView, Level, MissingFont, Renderer
+from game.render import (
+    DEFAULT,
+    DESIGN_SHARE,
+    Device,
+    FontSet,
+    FrameView,
+    Hud,
+    ItemView,
+    Level,
+    MissingFont,
+    Relief,
+    Renderer,
+    ladder,
+    relieve,
+)
 
 __all__ = ["Window"]
 
@@ -54,6 +71,9 @@ class Window:
         self.screen: Screen = screen or TitleScreen()
         self.inspector = Inspector()
         self.direction = start_direction(session.stall)
+        self.frames_ms: list[float] = []
+        self._steps, self._relief = ladder(self.renderer.level), Relief()
+        self.photo: PhotoMode | None = None
         self.crowd: Passersby | None = None
         self._models: Known = {}
         self._language = _speakable(session)
@@ -69,6 +89,24 @@ class Window:
         self.renderer.meet(cast.looks)
         self.crowd = Passersby(cast, assets.planner, assets.performer, self.session.world.seed)
 
+    def set_quality(self, level: Level, *, fixed: bool) -> None:
+        """The level that was picked, or that the player wants (``fixed``)."""
+        self.renderer.set_scale(1.0)
+        if self.renderer.level is not level:
+            self.renderer.set_level(level)
+        self._steps, self._relief = ladder(level, fixed=fixed), Relief()
+
+    def note_frame(self, frame_ms: float) -> None:
+        """How long the last frame took: what stays too slow is drawn simpler, and at the very end smaller."""
+        self.frames_ms = [*self.frames_ms[-FRAMES_SHOWN + 1 :], frame_ms]
+        before = self._relief.at
+        self._relief = relieve(self._relief, frame_ms, len(self._steps))
+        if self._relief.at != before:
+            step = self._steps[self._relief.at]
+            if step.level is not self.renderer.level:
+                self.renderer.set_level(step.level)
+            self.renderer.set_scale(step.scale)
+
     def close(self) -> None:
         """Give the GL objects back."""
         self.gallery.release()
@@ -82,11 +120,39 @@ class Window:
         if action.kind == "key" and action.key == "f11":
             self.session.settings = self.session.settings.next("fullscreen")
             return
+        if self.photo is not None:
+            if not self.photo.handle(action, self.device.size[1]):
+                self.photo = None
+            elif self.photo.wants_picture:
+                self._photograph(self.photo)
+            return
+        if action.kind == "key" and action.key == "f8":
+            self.renderer.times.on = not self.renderer.times.on
+            return
+        if action.kind == "key" and action.key == "f9":
+            calm = self.session.settings.reduced_motion
+            self.photo = PhotoMode(self.direction.camera(self.session.world.time_s + self._late_s), reduced_motion=calm)
+            return
         action = self._in_reference(action)
         if action.at is not None:
             self.session.pointed = self.picker().at(action.at, self.session.afternoon.owned(self.session.stall))
         if not self.inspector.handle(self.session, action):
             self._go(self.screen.handle(self.session, action))
+
+    def _photograph(self, photo: PhotoMode) -> None:
+        """Take the picture without the interface and say where it is."""
+        photo.wants_picture = False
+        size, s = self.device.size, self.session.strings
+        factor = fine_factor(size, photo.fine)
+        view = replace(self._frame(), camera=photo.camera(), hud=None)
+        pixels = self.renderer.snapshot(view, (size[0] * factor, size[1] * factor))
+        try:
+            path = photo_path(photo_folder())
+            write_png(path, smaller(pixels, factor))
+        except BadInput as error:
+            photo.say(s("photo_failed", reason=str(error)[:160]))
+        else:
+            photo.say(s("photo_saved", path=str(path)))
 
     def _in_reference(self, action: Action) -> Action:
         if action.at is None:
@@ -162,7 +228,10 @@ class Window:
         self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
 
     def advance(self, elapsed_s: float) -> None:
-        """Let the game run for some real time, in whole ticks."""
+        """Let the game run for some real time, in whole ticks; in photo mode time stands still."""
+        if self.photo is not None:
+            self.photo.advance(elapsed_s)
+            return
         self.inspector.reloader.advance(self.session, elapsed_s)
         self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
         while self._late_s >= TICK_S:
@@ -177,22 +246,28 @@ class Window:
             self._language = _speakable(session)
         if self.show.puppet is None:
             self._tick(None)  # a stall was just reached: nobody has moved there yet
-        self._paint_pictures()
+        if self.photo is None:
+            self._paint_pictures()
+        self.renderer.draw(self._frame())
+
+    def _frame(self) -> FrameView:
+        """The present moment as the renderer wants it."""
+        session = self.session
         params = session.world.body.face_params
         assert params is not None
-        view = self.show.frame(
+        now_s = session.world.time_s + self._late_s
+        return self.show.frame(
             params,
-            camera=self.direction.camera(session.world.time_s + self._late_s),
+            camera=self.direction.camera(now_s) if self.photo is None else self.photo.camera(),
             share=self._late_s / TICK_S,
             show_face=session.world.mode != "body",
             hidden_items=self.stage.gone(session.afternoon.owned(session.stall)),
-            time_s=session.world.time_s + self._late_s,
+            time_s=now_s,
             crowd=None if self.crowd is None else self.crowd.view(self._late_s / TICK_S),
             day_share=session.day_share if session.afternoon.wishes else DESIGN_SHARE,
             item=self._item_shown(),
             hud=self._draw_hud,
         )
-        self.renderer.draw(view)
 
     def _item_shown(self) -> ItemView | None:
         """The item in the player's hand."""
@@ -219,8 +294,13 @@ class Window:
     def _draw_hud(self, hud: Hud) -> None:
         settings = self.session.settings
         canvas = Canvas(hud, settings.language, settings.ui_scale, self.gallery)
+        if self.photo is not None:
+            self.photo.draw(self.session.strings, canvas)
+            return
         self.screen.draw(self.session, canvas)
         self.inspector.draw(self.session, canvas)
+        if self.renderer.times.on:
+            draw_timings(self.renderer, self.frames_ms, canvas)
 
 
 def saved_game(session: Session) -> SavedGame:

@@ -5,10 +5,12 @@ from game.render.camera import CLOSEUP, HERO, Camera
 from game.render.crowd import CrowdLook, CrowdMesh, CrowdView, dressed, load_crowd_mesh
 from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device
+from game.render.frame_times import PASSES
 from game.render.hud import Colour, Hud, rgba
 from game.render.item_drawing import Card, ItemView, cut_item, own_triangles
 from game.render.levels import DEFAULT, LEVELS, Level, level_named, pick_level
 from game.render.model import CharacterMesh, CharacterModel, StaticMesh
+from game.render.relief import Relief, ladder, relieve
 from game.render.renderer import Renderer
 from game.render.text import FontSet, MissingFont
 from game.render.view import FrameView
@@ -19,6 +21,7 @@ __all__ = [
     "DESIGN_SHARE",
     "HERO",
     "LEVELS",
+    "PASSES",
     "Camera",
     "Card",
     "CharacterMesh",
@@ -34,10 +37,12 @@ __all__ = [
     "ItemView",
     "Level",
     "MissingFont",
+    "Relief",
     "Renderer",
     "StaticMesh",
     "cut_item",
     "dressed",
+    "ladder",
     "level_named",
     "load_character",
     "load_crowd_mesh",
@@ -45,6 +50,7 @@ __all__ = [
     "load_stall",
     "own_triangles",
     "pick_level",
+    "relieve",
     "rgba",
     "save_png",
 ]

@@ -19,7 +19,7 @@ __all__ = ["CrowdLook", "CrowdMesh", "CrowdView", "dressed", "load_crowd_mesh"]
 
 Floats = NDArray[np.floating[Any]]
 
-CELL_M = 0.034
+CELL_M = 0.05
 # Hair and cloth of passers-by: a colour for the hair, a turn of the clothes' hue, how grey they are.
 _HAIR = np.array(
     [

@@ -1,6 +1,6 @@
 """Passers-by behind the stall: drawn small, out of focus and in the haze, then laid into the still picture.
 
-They are drawn at a third of the picture's size, blurred there, and copied only where the still picture shows the far
+They are drawn in a small picture of their own, blurred there, and copied only where the still picture shows the far
 backdrop and only in the columns where somebody is, so that a whole crowd costs a software rasteriser little.
 """
 
@@ -20,7 +20,7 @@ from game.render.targets import Picture
 
 __all__ = ["CrowdDrawing"]
 
-_SHRINK = 3
+_HEIGHT_PX = 180  # of the picture they are drawn in: as soft in every size of window
 _MARGIN = 0.03  # of the picture's width and height, around a person: blur, arms
 _HAZE = (0.97, 0.88, 0.74)
 _HAZE_NEAR, _HAZE_PER_M = 0.16, 0.055  # at 7 m from the eye, and more for each metre beyond
@@ -37,7 +37,7 @@ class CrowdDrawing(Owner):
         self._program = self.own(device.program("crowd.vert.glsl", "crowd.frag.glsl"))
         self._ground = self.own(device.program("crowd_shadow.vert.glsl", "crowd_shadow.frag.glsl"))
         self._blur = self.own(device.program("strip.vert.glsl", "crowd_blur.frag.glsl"))
-        self._lay = self.own(device.program("strip.vert.glsl", "crowd_lay.frag.glsl"))
+        self._lay = self.own(device.program("strip.vert.glsl", "picture.frag.glsl"))
         self._corner = self.own(context.buffer(np.array([-1, -1, 1, -1, -1, 1, 1, 1], dtype=np.float32)))
         self._spans = self.own(context.buffer(reserve=16 * max(len(looks), 1), dynamic=True))
         self._feet = self.own(context.buffer(reserve=16 * max(len(looks), 1), dynamic=True))
@@ -57,6 +57,7 @@ class CrowdDrawing(Owner):
         ]
         meshes: dict[int, tuple[moderngl.Buffer, moderngl.Buffer]] = {}
         self._people = [self._person(look, meshes) for look in looks]
+        self._shown = 0  # strips that are prepared
         self._size = (0, 0)
         self._targets = Owner()
 
@@ -91,18 +92,20 @@ class CrowdDrawing(Owner):
         self._device.nowhere.use()
         self._targets.release()
         self._targets = Owner()
-        small = (max(1, size[0] // _SHRINK), max(1, size[1] // _SHRINK))
+        height = min(_HEIGHT_PX, size[1])
+        small = (max(1, round(size[0] * height / size[1])), height)
         self._sharp = self._targets.own(Picture(self._device, small))
         self._soft = self._targets.own(Picture(self._device, small))
         depth = self._targets.own(self._context.depth_texture(small))
         self._target = self._targets.own(self._context.framebuffer([self._sharp.texture], depth))
         self._size = size
 
-    def draw(
-        self, view: CrowdView, target: moderngl.Framebuffer, size: tuple[int, int], eye: NDArray[np.float64],
+    def prepare(
+        self, view: CrowdView, size: tuple[int, int], eye: NDArray[np.float64],
         world_to_clip: NDArray[np.float64], day: Daylight, most: int,
     ) -> None:  # fmt: skip
-        """Draw the first ``most`` passers-by into ``target``; the Frame block must be bound."""
+        """Draw the first ``most`` passers-by into their small picture; the Frame block must be bound."""
+        self._shown = 0
         count = min(len(view.matrices), len(self._people), most)
         boxes = [_box(view.place[i], float(view.tall_m[i]), world_to_clip) for i in range(count)]
         shown = [i for i in range(count) if boxes[i] is not None]
@@ -114,17 +117,24 @@ class CrowdDrawing(Owner):
         self._draw_people(view, shown, eye, day)
         self._context.enable_only(moderngl.NOTHING)
         self._soft.target.use()
+        self._soft.target.clear()  # a strip's edge looks at its neighbour
         self._sharp.texture.use(0)
         width, height = self._soft.texture.size
         set_uniforms(self._blur, texel=(1.0 / width, 1.0 / height))
         self._strips[0].render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(spans))
+        self._shown = len(spans)
+
+    def lay(self, target: moderngl.Framebuffer) -> None:
+        """Lay what was prepared into ``target``, where its depth shows the far plane."""
+        if not self._shown:
+            return
         self._soft.texture.use(0)
         target.use()
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         self._context.depth_func = "<="
         self._context.blend_func = PREMULTIPLIED
         target.depth_mask = False
-        self._strips[1].render(moderngl.TRIANGLE_STRIP, vertices=4, instances=len(spans))
+        self._strips[1].render(moderngl.TRIANGLE_STRIP, vertices=4, instances=self._shown)
         target.depth_mask = True
 
     def _draw_people(self, view: CrowdView, shown: Sequence[int], eye: NDArray[np.float64], day: Daylight) -> None:

@@ -23,15 +23,16 @@ class Level:
     shadow_every: int  # frames between two shadow maps
     face_size: int
     people: int  # passers-by
+    clouds: bool  # whether they drift
     line_px: float = 1.7  # outline width in a picture 720 pixels high
 
 
 LEVELS: tuple[Level, ...] = (
-    Level("low", 0, 15_000, 512, 1, 2, 512, 0),
-    Level("medium", 0, 25_000, 512, 1, 2, 512, 3),
-    Level("default", 0, 40_000, 768, 2, 2, 512, 6),
-    Level("high", 4, 25_000, 768, 1, 2, 512, 6),
-    Level("ultra", 4, 40_000, 768, 2, 1, 1024, 8),
+    Level("low", 0, 15_000, 512, 1, 2, 512, 0, False),
+    Level("medium", 0, 25_000, 512, 1, 2, 512, 3, False),
+    Level("default", 0, 40_000, 768, 2, 2, 512, 4, False),
+    Level("high", 4, 25_000, 768, 1, 2, 512, 6, True),
+    Level("ultra", 4, 40_000, 768, 2, 1, 1024, 8, True),
 )
 DEFAULT = LEVELS[2]
 

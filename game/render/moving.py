@@ -22,7 +22,7 @@ __all__ = ["Motion", "MovingMesh", "hanging_bulbs", "moving_meshes", "read_motio
 Floats = NDArray[np.floating[Any]]
 
 GUST_S = 11.0
-_COARSE_FROM, _COARSE_M = 160, 0.009  # triangles a thing may have before it is made coarser, with cells of this size
+_COARSE_FROM, _COARSE_M = 120, 0.012  # triangles a thing may have before it is made coarser, with cells of this size
 _LAMPS = ("bulb", "lantern")  # groups whose flat and paper parts glow
 _GLOWING = ("glass", "paper", "flame")
 _BULB = "glass"  # material of bulbs that hang in a still group

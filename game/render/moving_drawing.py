@@ -42,13 +42,15 @@ class MovingDrawing(Owner):
             ]
             self._halos = self.own(device.vertex_array(self._program, entries))
 
-    def draw(
-        self, target: moderngl.Framebuffer, time_s: float, world_to_clip: NDArray[np.float64], size: tuple[int, int]
-    ) -> None:
-        """Draw all of them into ``target``, against its depth."""
+    def pose(self, time_s: float, world_to_clip: NDArray[np.float64], size: tuple[int, int]) -> None:
+        """Skin all of them for a moment."""
         for moving, drawing in self._things:
             drawing.pose(moving.matrices(time_s), world_to_clip, size)
-            target.use()
+
+    def draw(self, target: moderngl.Framebuffer) -> None:
+        """Draw all of them into ``target``, against its depth."""
+        target.use()
+        for _, drawing in self._things:
             drawing.draw()
 
     def draw_halos(self, target: moderngl.Framebuffer, lamps: float) -> None:

@@ -18,6 +18,7 @@ from game.render.crowd_drawing import CrowdDrawing
 from game.render.daylight import DESIGN_SHARE, stepped
 from game.render.device import PREMULTIPLIED, Device, Owner
 from game.render.face_painter import FACE_MM, FacePainter, hidden_face
+from game.render.frame_times import FrameTimes
 from game.render.hud import Hud
 from game.render.item_drawing import ItemDrawing, ItemView
 from game.render.levels import DEFAULT, Level
@@ -25,8 +26,10 @@ from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox
 from game.render.model import CharacterModel, StaticMesh
 from game.render.motes import Motes
 from game.render.moving_drawing import MovingDrawing
-from game.render.scene_drawing import BakeKey, SceneDrawing
-from game.render.targets import Box, FrameTargets, copy_box, union
+from game.render.output import Output
+from game.render.scene_drawing import BakeKey, SceneDrawing, backdrop_place
+from game.render.sky import Sky
+from game.render.targets import Box, FrameTargets, union
 from game.render.text import FontSet
 from game.render.view import FrameView
 
@@ -81,6 +84,7 @@ class Renderer(Owner):
         self._painter: FacePainter | None = None
         self._moving: MovingDrawing | None = None
         self._crowd: CrowdDrawing | None = None
+        self._sky: Sky | None = None
         self._moving_meshes = stall.moving if stall is not None else ()
         self._stall, self._backdrop = stall, backdrop
         self._item: ItemDrawing | None = None
@@ -90,6 +94,9 @@ class Renderer(Owner):
         self._frames = 0
         self._light: LightBox | None = None  # for which the shadow map was drawn
         self._shown: moderngl.Framebuffer | None = None
+        self.times = FrameTimes(device)
+        self.scale = 1.0  # share of the picture's sides at which the scene is drawn; the interface never is smaller
+        self._output = self.own(Output(device))
         self.level = level
         self.set_level(level)
 
@@ -120,16 +127,31 @@ class Renderer(Owner):
         elif self._model is not None:
             self._character = CharacterDrawing(self.device, self._model, level)
             self._painter = FacePainter(self.device, level.face_size)
+        if level.clouds and self._backdrop is not None:
+            self._sky = Sky(self.device, self._backdrop)
         if self._moving_meshes:
             self._moving = MovingDrawing(self.device, self._moving_meshes, level)
 
+    def set_scale(self, scale: float) -> None:
+        """Draw the scene at a share of the picture's sides, from the next frame on."""
+        if scale != self.scale:
+            self.scale = scale
+            self._drop_canvas()
+
+    def _drop_canvas(self) -> None:
+        if self._canvas is not None:
+            self.device.nowhere.use()
+            self._canvas.targets.release()
+        self._canvas = self._shown = None
+
     def _drop_level(self) -> None:
         self.device.nowhere.use()
-        for part in (self._canvas.targets if self._canvas else None, self._character, self._painter, self._moving):
+        self._drop_canvas()
+        for part in (self._character, self._painter, self._moving, self._sky):
             if part is not None:
                 part.release()
-        self._canvas = self._character = self._painter = self._moving = None
-        self._light = self._shown = None
+        self._character = self._painter = self._moving = self._sky = None
+        self._light = None
 
     def meet(self, looks: Sequence[CrowdLook]) -> None:
         """Passers-by from now on: a frame's ``crowd`` has their matrices, in this order."""
@@ -151,11 +173,10 @@ class Renderer(Owner):
     def draw(self, view: FrameView) -> None:
         """Draw one frame at the device's size, into its window or, without one, to be read back."""
         size = self.device.size
-        if self._canvas is None or self._canvas.targets.size != size:
-            if self._canvas is not None:
-                self.device.nowhere.use()
-                self._canvas.targets.release()
-            self._canvas = self._make_canvas(size)
+        self.times.next_frame()
+        if self._canvas is None or self._canvas.targets.full != size:
+            self._drop_canvas()
+            self._canvas = self._make_canvas(size, self.scale)
         self._shown = self._draw(view, self._canvas, self.device.context.screen if self.device.windowed else None)
 
     def snapshot(self, view: FrameView, size: tuple[int, int]) -> NDArray[np.uint8]:
@@ -178,8 +199,8 @@ class Renderer(Owner):
             _ = self.device.context.error  # moderngl asks the window for an attachment, which GL minds but obeys
         return pixels
 
-    def _make_canvas(self, size: tuple[int, int]) -> _Canvas:
-        return _Canvas(FrameTargets(self.device, size, min(self.level.samples, self.device.max_samples)))
+    def _make_canvas(self, size: tuple[int, int], scale: float = 1.0) -> _Canvas:
+        return _Canvas(FrameTargets(self.device, size, min(self.level.samples, self.device.max_samples), scale))
 
     def _draw(self, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None) -> moderngl.Framebuffer:
         """Draw a frame into the canvas and, if given, the window; returns where it can be read."""
@@ -191,17 +212,21 @@ class Renderer(Owner):
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share)
         self._light_up(day_share)
         changed = canvas.last_box
-        if self._bake(key, canvas):
-            changed = (0, 0, *targets.size)
-        # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory.
+        with self.times.measured("bake"):
+            if self._bake(key, canvas):
+                changed = (0, 0, *targets.size)
+        box = self._prepare(view, targets)
+        # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory. All that is
+        # drawn elsewhere was drawn before it: going back to a picture begun costs it the whole picture once more.
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
         if view.show_stall and self._draw_life(view, targets):
             changed = (0, 0, *targets.size)
-        if self._character is not None and self._painter is not None:
-            self._paint_face(view, self._painter, targets.size)
-            canvas.last_box = self._draw_character(view, self._character, self._painter, targets)
-            changed = union(changed, canvas.last_box) if changed[2] else canvas.last_box
+        if box is not None and self._character is not None and self._painter is not None:
+            with self.times.measured("person"):
+                self._draw_character(view, self._character, self._painter, targets)
+            canvas.last_box = box
+            changed = union(changed, box) if changed[2] else box
         self._frames += 1
         return self._show(view, targets, changed, window)
 
@@ -243,18 +268,52 @@ class Renderer(Owner):
         canvas.baked, canvas.is_draft = key, draft
         return True
 
+    def _prepare(self, view: FrameView, targets: FrameTargets) -> Box | None:
+        """Everything that is drawn or skinned aside: passers-by, face, meshes, the shadow map.
+
+        Returns the box of the picture that the person covers, None where there is nobody.
+        """
+        light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
+        world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, self.level.line_px)
+        if self._crowd is not None and self._crowd_shown(view) and view.crowd is not None:
+            with self.times.measured("crowd"):
+                eye, day = np.array(view.camera.eye), self._lights.day
+                self._crowd.prepare(view.crowd, targets.size, eye, world_to_clip, day, self.level.people)
+        character, painter = self._character, self._painter
+        if character is not None and painter is not None:
+            with self.times.measured("face"):
+                self._paint_face(view, painter, targets.size)
+        with self.times.measured("skin"):
+            if self._moving is not None and view.show_stall:
+                self._moving.pose(view.time_s, world_to_clip, targets.size)
+            if character is None or painter is None:
+                return None
+            if isinstance(character, AvatarDrawing) and view.look is not None:
+                character.look(view.look)
+            box = character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall)
+            if self._frames % self.level.shadow_every == 0 or self._light is not light:
+                character.cast()
+                self._light = light
+        return _with_shadow(box, targets.size)
+
+    def _crowd_shown(self, view: FrameView) -> bool:
+        return self._crowd is not None and view.crowd is not None and view.show_stall and self.level.people > 0
+
     def _draw_life(self, view: FrameView, targets: FrameTargets) -> bool:
-        """Passers-by and what sways; True if there is any of it."""
-        crowd = self._crowd if view.crowd is not None and self.level.people else None
-        if crowd is None and self._moving is None:
+        """Clouds, passers-by and what sways; True if there is any of it."""
+        sky = self._sky
+        crowd = self._crowd if self._crowd_shown(view) else None
+        if sky is None and crowd is None and self._moving is None:
             return False
-        world_to_clip = self._frame.write(view.camera, self._lights, TABLE_LIGHT, targets.size, self.level.line_px)
-        if crowd is not None and view.crowd is not None:
-            eye, day = np.array(view.camera.eye), self._lights.day
-            crowd.draw(view.crowd, targets.work, targets.size, eye, world_to_clip, day, self.level.people)
-        if self._moving is not None:
-            self._moving.draw(targets.work, view.time_s, world_to_clip, targets.size)
-            self._moving.draw_halos(targets.work, self._lights.day.lamps)
+        with self.times.measured("life"):
+            if sky is not None:
+                place = backdrop_place(view.camera, targets.size[0] / targets.size[1])
+                sky.draw(targets.work, place, view.time_s, self._lights.day)
+            if crowd is not None:
+                crowd.lay(targets.work)
+            if self._moving is not None:
+                self._moving.draw(targets.work)
+                self._moving.draw_halos(targets.work, self._lights.day.lamps)
         return True
 
     def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
@@ -267,21 +326,13 @@ class Renderer(Owner):
         elif self._face is not None:
             painter.paint(self._face)
 
-    def _draw_character(self, view: FrameView, character: _Drawing, painter: FacePainter, targets: FrameTargets) -> Box:
-        level = self.level
-        light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
-        world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, level.line_px)
-        if isinstance(character, AvatarDrawing) and view.look is not None:
-            character.look(view.look)
-        box = character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall)
-        if self._frames % level.shadow_every == 0 or self._light is not light:
-            character.cast()
-            self._light = light
+    def _draw_character(
+        self, view: FrameView, character: _Drawing, painter: FacePainter, targets: FrameTargets
+    ) -> None:
         targets.work.use()
         character.draw(painter.under)
         self._draw_shadow_on_table(view, character, targets)
         character.draw_over(painter.over)
-        return _with_shadow(box, targets.size)
 
     def _draw_shadow_on_table(self, view: FrameView, character: _Drawing, targets: FrameTargets) -> None:
         context = self.device.context
@@ -298,26 +349,17 @@ class Renderer(Owner):
     def _show(
         self, view: FrameView, targets: FrameTargets, changed: Box, window: moderngl.Framebuffer | None
     ) -> moderngl.Framebuffer:
-        context = self.device.context
-        picture = targets.work
-        if targets.samples:
-            copy_box(context, targets.resolved, targets.work, changed)
-            picture = targets.resolved
-        # What is drawn on top must not stay in a picture that the next frame only mends.
-        if window is not None or (targets.samples and (view.hud is not None or view.show_stall)):
-            output = targets.output if window is None else window
-            if window is not None:
-                window.viewport = (0, 0, *targets.size)
-            output.use()
-            context.copy_framebuffer(output, picture)
-            picture = output
-        picture.use()
-        if view.show_stall and view.item is None:
-            self._motes.draw(view.time_s, targets.size[0] / targets.size[1])
+        with self.times.measured("output"):
+            over = view.hud is not None or view.show_stall
+            picture = self._output.finish(targets, changed, window, over=over)
+            picture.use()
+            if view.show_stall and view.item is None:
+                self._motes.draw(view.time_s, targets.full[0] / targets.full[1])
         if view.hud is not None:
-            self.hud.begin(targets.size)
-            view.hud(self.hud)
-            self.hud.end()
+            with self.times.measured("interface"):
+                self.hud.begin(targets.full)
+                view.hud(self.hud)
+                self.hud.end()
         return picture
 
 

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from game.render.camera import HERO, Camera
 from game.render.daylight import DESIGN_SHARE
 from game.render.device import Device, Owner, layout, set_uniforms
+from game.render.foreground import Foreground
 from game.render.lighting import STALL_LIGHT, FrameBlock, Lights
 from game.render.model import Run, StaticMesh
 from game.render.targets import BakeTargets
 
-__all__ = ["BakeKey", "SceneDrawing"]
+__all__ = ["BakeKey", "SceneDrawing", "backdrop_place"]
 
 _SHADOW_SIZE = 1536
 _NO_SHADOW = ("awning", "sway", "spin")  # it would shade the whole stall; what moves casts none either
@@ -60,6 +61,7 @@ class SceneDrawing(Owner):
         self._shadow_target = self.own(context.framebuffer([], self.shadow_map))
         self._frame = self.own(FrameBlock(device))
         self._lights = Lights.market()
+        self._foreground = self.own(Foreground(device))
         if mesh is not None:
             self._make_mesh(device, mesh)
         self._make_receiver(device)
@@ -152,6 +154,8 @@ class SceneDrawing(Owner):
         self._draw_backdrop(key, 1.0)
         self._shade(runs, sun_share=1.0)
         self._draw_hulls(runs)
+        if any(run.group == "table" for run in runs):  # a stall, not an item in the hand
+            self._foreground.draw(key.camera)
         targets.resolve(raw)
         self._make_bloom(targets)
         self._grade(targets, targets.still, key.stall)
@@ -183,7 +187,7 @@ class SceneDrawing(Owner):
         self._context.enable_only(moderngl.NOTHING)
         self._pictures[key.stall].use(0)
         aspect = key.size[0] / key.size[1]
-        place = _backdrop_place(key.camera, aspect) if key.stall else (1.0, 1.0, 0.0, 0.0)
+        place = backdrop_place(key.camera, aspect) if key.stall else (1.0, 1.0, 0.0, 0.0)
         day, plain = self._lights.day, np.ones(3)
         set_uniforms(
             self._backdrop_program,
@@ -243,7 +247,7 @@ def _studio() -> NDArray[np.uint8]:
     return np.broadcast_to(colour, (64, 4, 3)).astype(np.uint8)
 
 
-def _backdrop_place(camera: Camera, aspect: float) -> tuple[float, float, float, float]:
+def backdrop_place(camera: Camera, aspect: float) -> tuple[float, float, float, float]:
     """Scale and offset that carry picture coordinates (0..1) to the painting: a far plane that fills the hero camera.
 
     Works in tangents of the view angles: the painted horizon stays at eye level, turning pans and zooming zooms.

@@ -78,14 +78,16 @@ class BakeTargets(Owner):
 class FrameTargets(Owner):
     """Everything that depends on the picture's size and samples.
 
+    size: of the scene; full: of the picture with the interface, where the scene is drawn smaller.
     work: the still picture with the character drawn into it; resolved: the same without samples; output: with the
     interface. Without samples, work takes the place of the others.
     """
 
-    def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
+    def __init__(self, device: Device, full: tuple[int, int], samples: int, scale: float = 1.0) -> None:
         super().__init__()
-        self.size, self.samples = size, samples
+        size = (max(1, round(full[0] * scale)), max(1, round(full[1] * scale)))
+        self.size, self.full, self.samples = size, full, samples
         self.bake = self.own(BakeTargets(device, size, samples))
         self.work = _target(self, device, size, samples)
         self.resolved = self.own(Picture(device, size)).target if samples else self.work
-        self.output = self.own(Picture(device, size)).target if samples else self.work
+        self.output = self.own(Picture(device, full)).target if samples or size != full else self.work

@@ -113,7 +113,7 @@ def test_joints_without_vertices_get_a_box_on_the_mesh() -> None:
     [
         (cube(replace(CLOTH, kind="silk")), 1, "class hair, face"),
         (replace(cube(), joint=None), 1, "joints and weights"),
-        (cube(), 65, "1 to 64 joints"),
+        (cube(), 257, "1 to 256 joints"),
         (replace(cube(), joint=np.full((8, 4), 7, np.uint8)), 3, "joints below 3"),
     ],
 )

@@ -1,6 +1,6 @@
 // A passer-by: far away, so every vertex follows one joint and is lit by itself.
 #include "frame.glsl"
-layout(std140) uniform Joints { vec4 joint_rows[192]; };
+#include "joints.glsl"
 in vec3 position;
 in vec3 normal;
 in vec2 face_uv;

@@ -1,12 +1,11 @@
+// Out of focus like the painted backdrop: few taps, for the picture is small and will be enlarged.
 in vec2 uv;
 uniform sampler2D picture;
 uniform vec2 texel;
 out vec4 colour;
 void main() {
-    vec4 sum = texture(picture, uv) * 2.0;
-    for (int i = 0; i < 6; i++) {
-        float a = float(i) * 1.0472;
-        sum += texture(picture, uv + vec2(cos(a), sin(a)) * texel * 1.7);
-    }
-    colour = sum / 8.0;
+    vec2 far = texel * 1.15;
+    colour = 0.28 * texture(picture, uv)
+           + 0.18 * (texture(picture, uv + far) + texture(picture, uv - far)
+                   + texture(picture, uv + vec2(far.x, -far.y)) + texture(picture, uv + vec2(-far.x, far.y)));
 }

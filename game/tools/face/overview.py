@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from game.app.studio import write_png
+from game.app.pictures import write_png
 from game.app.ui import FEELING_COLOURS
 from game.core import EMOTIONS, emotion_vector
 from game.face import FaceAsset, load_face

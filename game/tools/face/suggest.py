@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from game.app.studio import write_png
+from game.app.pictures import write_png
 from game.core import BadInput, parse_emotion
 from game.face import load_face
 from game.tools.face.sheet import SheetRow, draw_rows, draw_sheet, part_names
