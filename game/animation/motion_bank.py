@@ -68,7 +68,7 @@ class MotionBank:
                 value.setflags(write=False)
 
 
-def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
+def bake(library: UnitLibrary, layers: tuple[str, ...], radius: float = RADIUS) -> MotionBank:
     """Rows of every variant in the library. Raises BadInput for a unit without motion or an unknown contact."""
     takes: dict[str, rw.TakeRows] = {}
     units = library.units
@@ -125,8 +125,8 @@ def bake(library: UnitLibrary, layers: tuple[str, ...]) -> MotionBank:
         owned=owned,
         frame=frame,
         looks=np.array([bool({"gaze"} & (u.uses | u.locks)) for u in units]),
-        mix_slope=(2.0 * library.intensity / RADIUS**2).astype(np.float32),
-        mix_level=np.where(count > 0, -((library.intensity / RADIUS) ** 2), _ABSENT).astype(np.float32),
+        mix_slope=(2.0 * library.intensity / radius**2).astype(np.float32),
+        mix_level=np.where(count > 0, -((library.intensity / radius) ** 2), _ABSENT).astype(np.float32),
         neutral_posture=_neutral_posture(library),
         rest=np.array([_rest(library, layer) for layer in layers], dtype=np.int32),
     )

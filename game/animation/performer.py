@@ -23,6 +23,7 @@ from game.core.emotion_space import EMOTIONS
 from game.core.humanoid import HEAD_CENTRE_OFFSET
 from game.core.springs import critical_spring
 from game.embos import LAYERS, Decisions, UnitLibrary
+from game.embos.mixing import RADIUS
 
 __all__ = ["MODES", "Mode", "PerformSignal", "Performer", "PerformerState"]
 
@@ -91,13 +92,14 @@ class Performer:
         layers: tuple[str, ...] = LAYERS,
         life: liveliness.LifeConfig | None = None,
         collide: bool = True,
+        radius: float = RADIUS,
     ) -> None:
-        """layers: the planner's layer order; collide: keep hands out of body and table."""
+        """layers, radius: the planner's order and r of eq. 5; collide: keep hands out of body and table."""
         self.library = library
         self.layers = layers
         self.life = life or liveliness.LifeConfig()
         self.collide = collide
-        self.bank: MotionBank = bake(library, layers)
+        self.bank: MotionBank = bake(library, layers, radius)
         self._posture = layers.index("posture")
         self._held_by_mode: dict[str, tuple[int, ...]] = {
             "full": (),

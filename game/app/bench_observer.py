@@ -74,7 +74,7 @@ def rows(quick: bool = False, data: Path = _SHARED) -> list[Row]:
         _row("takes: stretches left out", Observer.left_out(training), windows=len(training.emotion))
     ] if not quick else []  # fmt: skip
     planner = load_planner()
-    performer = Performer(planner.library, layers=planner.tables.layers)
+    performer = Performer(planner.library, layers=planner.tables.layers, radius=planner.config.radius)
     for mode in MODES:
         scenes = play_scenes(planner, performer, mode, _FIRST_SEED[mode], plan.seeds, plan.seconds)
         features, felt = scene_features(scenes)

@@ -26,5 +26,5 @@ def load_step_assets(stall: str = "flea", *, body: bool = True) -> StepAssets:
     planner = load_planner()
     if not body:
         return StepAssets(talk, planner)
-    performer = Performer(planner.library, layers=planner.tables.layers)
+    performer = Performer(planner.library, layers=planner.tables.layers, radius=planner.config.radius)
     return StepAssets(talk, planner, performer, load_face())

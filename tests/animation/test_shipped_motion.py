@@ -20,7 +20,8 @@ UNITS = ASSETS / "motion" / "units.yaml"
 @pytest.fixture(scope="module")
 def shipped() -> tuple[Planner, Performer]:
     library = UnitLibrary.load(UNITS)
-    return Planner(library, load_config(ASSETS / "motion" / "planner.yaml")), Performer(library)
+    planner = Planner(library, load_config(ASSETS / "motion" / "planner.yaml"))
+    return planner, Performer(library, radius=planner.config.radius)
 
 
 @pytest.mark.parametrize("emotion", ["anger", "joy", "sadness"])

@@ -11,14 +11,14 @@ from game.core import quaternion as quat
 from game.core.emotion_space import with_neutral
 from game.embos import PlannerSignal
 
-STEPS, EACH, DT_S = 11, 8, 0.2
+STEPS, EACH, DT_S = 11, 16, 0.2
 ALONE_S, SECONDS = 60.0, 150.0  # everyone begins with the same unit: that has to be forgotten first
 NOISE = 0.1
 
 
 def test_from_joy_to_anger_in_ten_steps_shares_and_mean_pose_go_one_way() -> None:
     planner = load_planner()
-    library, performer = planner.library, Performer(planner.library)
+    library, performer = planner.library, Performer(planner.library, radius=planner.config.radius)
     share = np.linspace(0.0, 1.0, STEPS).repeat(EACH)
     six = np.zeros((len(share), 6))
     six[:, EMOTIONS.index("joy")], six[:, EMOTIONS.index("anger")] = 1.0 - share, share

@@ -191,7 +191,7 @@ def test_no_archive_a_cut_archive_and_a_bomb_are_refused(tmp_path: Path, monkeyp
 def test_planner_yaml_states_the_defaults_and_refuses_slips(tmp_path: Path) -> None:
     shipped = ASSETS / "motion" / "planner.yaml"
     config = load_config(shipped)
-    assert replace(config, stress=StressRule()) == PlannerConfig()  # names and words belong to the repertoire
+    assert replace(config, stress=StressRule(), radius=PlannerConfig().radius) == PlannerConfig()
     assert set(config.stress.units) <= set(UnitLibrary.load(ASSETS / "motion" / "units.yaml").index)
     path = tmp_path / "planner.yaml"
     text = shipped.read_text("utf-8")

@@ -96,7 +96,7 @@ def test_feelings_are_told_from_stretches_that_were_not_learnt(training: Trainin
 def test_bodies_tell_and_bodies_held_still_do_not(training: Training) -> None:
     observer = Observer(training)
     planner = load_planner()
-    performer = Performer(planner.library, layers=planner.tables.layers)
+    performer = Performer(planner.library, layers=planner.tables.layers, radius=planner.config.radius)
     share = {
         mode: score_scenes(observer, play_scenes(planner, performer, mode, 400, 1, 16.0)).share
         for mode in ("body", "face")
