@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pygame
 
-__all__ = ["Action", "action_of"]
+__all__ = ["COMMANDS", "Action", "action_of", "command_of"]
 
 
 @dataclass(frozen=True)
@@ -15,7 +16,7 @@ class Action:
 
     at: device pixels for pointer, click, release. key: a character or function key's name. amount: wheel notches.
     move, held: device pixels since the last event, and the button that is down: "", left or middle (pointer).
-    fast: whether shift is held (larger steps).
+    fast: whether shift is held (larger steps). raw: the key that was really pressed, where keys have changed places.
     """
 
     kind: str
@@ -25,6 +26,11 @@ class Action:
     fast: bool = False
     move: tuple[float, float] = (0.0, 0.0)
     held: str = ""
+    raw: str = ""
+
+
+COMMANDS = ("o", "p", "b", "w", "g", "t", "h", "a", "tab", "backspace", "l", "f6", "f7", "f11")
+"""What can be given another key, by the usual one."""
 
 
 _KEYS = {
@@ -39,8 +45,13 @@ _KEYS = {
 }
 
 
-def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | None:
-    """The action of a pygame event, None where it means nothing. ``pixel_ratio``: device pixels per window pixel."""
+def action_of(
+    event: pygame.event.Event, pixel_ratio: float = 1.0, keys: Mapping[str, str] | None = None
+) -> Action | None:
+    """The action of a pygame event, None where it means nothing. ``pixel_ratio``: device pixels per window pixel.
+
+    keys: command -> the key it has instead of its usual one.
+    """
     if event.type == pygame.QUIT:
         return Action("quit")
     if event.type == pygame.KEYDOWN:
@@ -49,7 +60,8 @@ def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | N
             return Action("key", key="f11")
         if event.key in _KEYS:
             return Action(_KEYS[event.key], fast=fast)
-        return Action("key", key=pygame.key.name(event.key).lower(), fast=fast)
+        name = pygame.key.name(event.key).lower()
+        return Action("key", key=command_of(name, keys or {}), fast=fast, raw=name)
     if event.type == pygame.MOUSEMOTION:
         down = getattr(event, "buttons", (0, 0, 0))
         held = "left" if down[0] else "middle" if down[1] else ""
@@ -67,6 +79,14 @@ def action_of(event: pygame.event.Event, pixel_ratio: float = 1.0) -> Action | N
     if event.type in {pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED}:
         return Action("resize")
     return None
+
+
+def command_of(name: str, keys: Mapping[str, str]) -> str:
+    """The command a key stands for; a key that was taken away from one without another stands for nothing."""
+    for command, key in keys.items():
+        if key == name:
+            return command
+    return "" if name in keys else name
 
 
 def _scaled(at: tuple[int, int], ratio: float) -> tuple[float, float]:

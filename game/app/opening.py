@@ -13,6 +13,7 @@ from game.app.afternoon import Afternoon
 from game.app.bazaar import load_bazaar
 from game.app.loading import load_step_assets
 from game.app.market import Market, Stall, StallLoader, read_stall
+from game.app.reading import load_read
 from game.app.saves import load_game
 from game.app.session import Session
 from game.app.settings import load_settings, user_folder
@@ -52,6 +53,7 @@ def open_session(args: argparse.Namespace, avatar: Avatar | None = None) -> Sess
     )
     strings = load_strings(settings.language)
     session = Session(assets, world, strings, settings, Afternoon(seed=seed), market, message=message or "")
+    session.read = load_read(user_folder())
     if args.overlay:
         session.overlays |= {"feelings", "units"}
     if others:

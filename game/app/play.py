@@ -29,6 +29,7 @@ from game.app.arguments import parse_size
 from game.app.designer import warp_session
 from game.app.input import action_of
 from game.app.opening import open_session
+from game.app.pad import Pads
 from game.app.screens import TalkScreen
 from game.app.session import Screen, Session
 from game.app.settings import Settings
@@ -143,10 +144,12 @@ def _set_icon(window: Window) -> None:
 def _loop(window: Window) -> None:
     session = window.session
     fullscreen, quality = session.settings.fullscreen, session.settings.quality
+    pads = Pads()
+    pads.start()
     before = time.perf_counter()
     while session.running:
         for event in pygame.event.get():
-            action = action_of(event, _pixel_ratio(window))
+            action = action_of(event, _pixel_ratio(window), session.settings.keys) or pads.action_of(event)
             if action is not None and action.kind == "resize":
                 window.device.resize(*pygame.display.get_window_size())
             elif action is not None:

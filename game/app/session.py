@@ -5,17 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from game.app.afternoon import Afternoon, Reading, finish_talk, lesson_of, next_day, open_day, talk_minutes, visit_stall
-from game.app.input import Action
+from game.app.input import COMMANDS, Action, command_of
 from game.app.market import Market, StallLoader
-from game.app.settings import Settings
+from game.app.reading import ReadLines
+from game.app.settings import Settings, save_settings
 from game.app.step import StepAssets, new_world
 from game.app.strings import Strings
 from game.app.talk import TalkState
+from game.app.tells import TellWatch
 from game.app.ui import Canvas
 from game.app.world import Intent, Mark, World, enter_talk, leave_talk
+from game.face import FaceParams
 
-__all__ = ["MenuScreen", "Screen", "Session"]
+__all__ = ["MenuScreen", "Screen", "Session", "change_setting", "keep_keys", "take_back"]
 
 
 @dataclass
@@ -25,7 +31,8 @@ class Session:
     assets: those of the stall one stands at; during a talk, bent by its lesson. loader: reads the other stalls;
     taken_up: whether the game saved last has been looked for. designed: a designer has had a hand in it (a script
     reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more. pointed: the item on the table
-    under the pointer.
+    under the pointer. watch: sees what the body tells in the talk under way. read:
+    lines that have been read before.
     """
 
     assets: StepAssets
@@ -41,6 +48,8 @@ class Session:
     taken_up: bool = False
     pointed: str | None = None
     designed: bool = False
+    read: ReadLines = field(default_factory=ReadLines)
+    watch: TellWatch = field(default_factory=TellWatch)
 
     @property
     def stall(self) -> str:
@@ -82,12 +91,14 @@ class Session:
         """Ask about a thing on this table."""
         self.bend()
         talk = visit_stall(self.assets.talk, self.afternoon, item)
-        self.world = enter_talk(self.assets, self.world, talk)
+        self.world, self.watch = enter_talk(self.assets, self.world, talk), TellWatch()
+        if lesson_of(self.market.bazaar, self.afternoon).greeting_habit:
+            self.world = replace(self.world, habit=self.assets.talk.person.habit_label)
 
     def resume_talk(self, talk: TalkState, marks: tuple[Mark, ...]) -> None:
         """Go on with a talk as it stood, its curve with it."""
         self.bend()
-        self.world = replace(enter_talk(self.assets, self.world, talk), marks=marks)
+        self.world, self.watch = replace(enter_talk(self.assets, self.world, talk), marks=marks), TellWatch()
 
     def open_day(self, *, again: bool = False) -> None:
         """A new afternoon: the next day of this one, or a first one."""
@@ -122,10 +133,56 @@ class Session:
         self.world = leave_talk(self.world)
 
 
+def change_setting(session: Session, name: str) -> None:
+    """Move a setting to its next value, apply what is ours to apply, and keep it."""
+    settings: Settings = session.settings.next(name)
+    session.settings = settings
+    if name == "language":
+        session.strings = session.strings.switched(settings.language)
+        session.world = replace(session.world, language=settings.language)
+    session.message = save_settings(settings) or ""
+
+
+def keep_keys(session: Session, command: str, key: str) -> None:
+    """Give a command another key, and whoever had that key the command's old one; no command: all as usual."""
+    keys = dict(session.settings.keys)
+    if not command:
+        keys = {}
+    else:
+        old, other = keys.get(command, command), command_of(key, keys)
+        keys[command] = key
+        if other in COMMANDS and other != command:
+            keys[other] = old
+    session.settings = replace(session.settings, keys={c: k for c, k in keys.items() if c != k})
+    session.message = save_settings(session.settings) or ""
+
+
+def take_back(session: Session) -> bool:
+    """Unsay the last choice: back to where it was made, as often as there are choices. The score remembers.
+
+    False where nothing can be taken back.
+    """
+    world = session.world
+    before = world.marks[-1].before if world.marks else None
+    if before is None or world.talk is None:
+        return False
+    gone = {line.id for line in world.talk.beat.lines}
+    backlog = world.backlog
+    while backlog and backlog[-1].id in gone:
+        backlog = backlog[:-1]
+    kept = world.marks[:-1]
+    entered = enter_talk(session.assets, world, before)
+    session.world = replace(entered, queue=(), backlog=backlog, marks=kept, waited=0)
+    session.watch.tells = [tell for tell in session.watch.tells if tell.round < len(kept)]
+    session.afternoon = replace(session.afternoon, taken_back=session.afternoon.taken_back + 1)
+    return True
+
+
 class Screen(Protocol):
     """One screen of the game. ``handle`` may return another screen to go to; ``intent`` is what the next tick does.
 
-    scene: which framing it wants, one of the director's scenes.
+    scene: which framing it wants, one of the director's scenes; played: a body and a face to draw instead of the
+    present ones.
     """
 
     scene: str
@@ -138,6 +195,8 @@ class Screen(Protocol):
 
     def draw(self, session: Session, canvas: Canvas) -> None: ...
 
+    def played(self) -> tuple[NDArray[np.float32], FaceParams] | None: ...
+
 
 class MenuScreen:
     """What screens without a talk have in common: they ask nothing of the tick and wait for the player."""
@@ -148,4 +207,7 @@ class MenuScreen:
         return Intent()
 
     def after_tick(self, session: Session) -> Screen | None:
+        return None
+
+    def played(self) -> tuple[NDArray[np.float32], FaceParams] | None:
         return None

@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from dataclasses import asdict, dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
 import platformdirs
+
+from game.app.input import COMMANDS
 
 __all__ = ["CHOICES", "TIMERS", "Settings", "load_settings", "save_settings", "user_folder"]
 
@@ -18,6 +21,8 @@ APP = "mental-communication-game"
 CHOICES: dict[str, tuple[Any, ...]] = {
     "language": ("en", "ja"),
     "text_speed": ("slow", "normal", "fast", "instant"),
+    "auto_forward": ("off", "slow", "normal", "fast"),
+    "skip_unread": (False, True),
     "fullscreen": (False, True),
     "ui_scale": (1.0, 1.25, 1.5, 2.0),
     "captions": (False, True),
@@ -34,10 +39,16 @@ TIMERS: dict[str, float] = {"off": 0.0, "slow": 2.5, "normal": 1.0}
 
 @dataclass(frozen=True)
 class Settings:
-    """What the player has chosen. captions: describe in words what the body shows. reduced_motion: the camera cuts."""
+    """What the player has chosen. captions: describe in words what the body shows. reduced_motion: the camera cuts.
+
+    auto_forward: lines go on by themselves; skip_unread: skipping does not stop at what is new; keys: command -> the
+    key it has instead of its usual one.
+    """
 
     language: str = "en"
     text_speed: str = "normal"
+    auto_forward: str = "off"
+    skip_unread: bool = False
     fullscreen: bool = False
     ui_scale: float = 1.0
     captions: bool = False
@@ -45,6 +56,7 @@ class Settings:
     high_contrast: bool = False
     quality: str = "auto"
     timers: str = "off"
+    keys: Mapping[str, str] = field(default_factory=dict)
 
     def next(self, name: str) -> Settings:
         """The setting's following value, around the circle."""
@@ -70,8 +82,16 @@ def load_settings(folder: Path | None = None) -> tuple[Settings, str | None]:
     except (OSError, ValueError, RecursionError) as error:
         return Settings(), f"{path}: settings not readable ({str(error)[:80]}), using the defaults"
     known = {f.name for f in fields(Settings)}
+    data_keys = data.pop("keys", {})
     good = {k: v for k, v in data.items() if k in known and v in CHOICES[k] and type(v) is type(CHOICES[k][0])}
-    return replace(Settings(), **good), None
+    return replace(Settings(), **good, keys=_keys(data_keys)), None
+
+
+def _keys(data: Any) -> dict[str, str]:
+    """Commands with other keys than usual; what makes no sense is left out."""
+    if not isinstance(data, dict):
+        return {}
+    return {k: v for k, v in data.items() if k in COMMANDS and isinstance(v, str) and 0 < len(v) < 20}
 
 
 def save_settings(settings: Settings, folder: Path | None = None) -> str | None:

@@ -187,6 +187,7 @@ class StageShow:
         self,
         params: FaceParams,
         *,
+        matrices: NDArray[np.float32] | None = None,
         camera: Camera = HERO,
         share: float = 1.0,
         show_face: bool = True,
@@ -197,13 +198,13 @@ class StageShow:
         item: ItemView | None = None,
         hud: Callable[[Hud], None] | None = None,
     ) -> FrameView:
-        """The frame as the renderer wants it."""
+        """The frame as the renderer wants it. matrices (j, 4, 4): another moment's body instead of the present one."""
         assert self.puppet is not None, "tick comes before frame"
         stale = self._face is None or self._params is None or np.abs(params - self._params).max() > 1e-3
         if stale and self.assets.avatar is None:
             self._face, self._params = tessellate(params, self.assets.face), params.copy()
         return FrameView(
-            skin_matrices=self.puppet.matrices(share),
+            skin_matrices=self.puppet.matrices(share) if matrices is None else matrices,
             camera=self.assets.framed(camera),
             face=self._face,
             look=self._look(share, show_face),

@@ -47,6 +47,8 @@ NAMED_GESTURE_S = 0.4
 """When the stroke of a gesture that the script names falls, seconds into its line: on the first words."""
 PRESENT = 0.15
 """A gesture that less than this of the felt emotion knows does not hold a line up and competes with no beat."""
+HABIT_S, HABIT_SHARE = 5.0, 0.75
+"""A greeting habit is seen for so long, and moves the body by this share: it is learnt before it can mislead."""
 CUSTOMER_GAZE = np.array([0.0, 1.16, 3.0])
 
 
@@ -176,7 +178,11 @@ def feelings_after(felt: Floats, felt_target: Floats, shown: Floats, shown_targe
 
 def body_emotion(assets: StepAssets, world: World) -> Floats:
     """(7,) what drives posture and mannerism: the felt emotion as far as it leaks, strongest in the burst."""
-    return leaked_emotion(assets.talk.person, world.felt, world.shown[:6], np.array(world.time_s - world.burst_s))
+    leaked = leaked_emotion(assets.talk.person, world.felt, world.shown[:6], np.array(world.time_s - world.burst_s))
+    if not world.habit or len(world.marks) != 1 or world.time_s - world.marks[0].time_s > HABIT_S:
+        return leaked
+    habit = np.eye(len(EMOTIONS))[EMOTIONS.index(world.habit)]
+    return with_neutral(leaked[:6] * (1.0 - HABIT_SHARE) + habit[:6] * HABIT_SHARE)
 
 
 def leaked_emotion(person: Temperament, felt: Floats, shown: Floats, since_burst_s: Floats) -> Floats:

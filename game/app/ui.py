@@ -13,7 +13,7 @@ from game.app.gallery import Gallery
 from game.app.input import Action
 from game.render import Hud
 
-__all__ = ["INK", "PALETTE", "Button", "Buttons", "Canvas", "Colour", "Rect", "fade", "hex_colour"]
+__all__ = ["INK", "PALETTE", "Button", "Buttons", "Canvas", "Colour", "Rect", "fade", "hex_colour", "paint_button"]
 
 Colour = tuple[float, float, float, float]
 
@@ -72,15 +72,26 @@ class Rect:
         return at is not None and self.x <= at[0] < self.x + self.w and self.y <= at[1] < self.y + self.h
 
 
+LABEL_MOST = 1.2
+"""Labels in fixed places grow so far; what is to be read (lines, choices, letters) grows as far as the player likes."""
+
+
 class Canvas:
     """Drawing in reference pixels on the renderer's HUD, never narrower than 1280 nor lower than 720 of them.
 
-    ``text_scale`` enlarges text only (accessibility). ``scale``: device pixels per reference pixel.
+    ``text_scale`` enlarges text only (accessibility); ``contrast`` makes sheets opaque, edges firm and text black or
+    white. ``scale``: device pixels per reference pixel.
     """
 
     def __init__(
-        self, hud: Hud, language: str = "en", text_scale: float = 1.0, pictures: Gallery | None = None
+        self,
+        hud: Hud,
+        language: str = "en",
+        text_scale: float = 1.0,
+        pictures: Gallery | None = None,
+        contrast: bool = False,
     ) -> None:
+        self.contrast = contrast
         self.hud = hud
         self.pictures = pictures
         self._k = min(1.0, hud.width / 1280.0)
@@ -106,6 +117,8 @@ class Canvas:
     ) -> None:
         """A rounded rectangle, perhaps with a border and a soft shadow."""
         k = self._k
+        if self.contrast:
+            fill, border_colour = _firm(fill), _firm(border_colour)
         self.hud.rect(
             rect.x * k, rect.y * k, rect.w * k, rect.h * k,
             fill=fill, radius=min(radius, rect.h / 2) * k, border=border * k, edge=border_colour, shadow=shadow * k,
@@ -127,16 +140,25 @@ class Canvas:
         font: str = "body",
         align: str = "left",
         shown: int | None = None,
+        whole: bool = False,
     ) -> float:
-        """One row of text with its top at y; returns its width. ``shown``: only so many characters (typing)."""
+        """One row of text with its top at y; returns its width. ``shown``: only so many characters (typing).
+
+        Labels in fixed places grow with ``text_scale`` up to LABEL_MOST only; ``whole``: part of a text, all the way.
+        """
         k = self._k
         at = {"left": 0.0, "center": 0.5, "right": 1.0}[align]
-        size *= self.text_scale * k
+        size *= self._scale(whole) * k
+        if self.contrast:
+            colour = _black_or_white(colour)
         return self.hud.text(text, x * k, y * k, size=size, colour=colour, role=font, align=at, shown=shown) / k
 
+    def _scale(self, whole: bool) -> float:
+        return self.text_scale if whole else min(self.text_scale, LABEL_MOST)
+
     def measure(self, text: str, size: float, font: str = "body") -> float:
-        """Width of a row in reference pixels."""
-        return self.hud.measure(text, size * self.text_scale * self._k, font)[0] / self._k
+        """Width of a label in reference pixels."""
+        return self.hud.measure(text, size * self._scale(False) * self._k, font)[0] / self._k
 
     def rows(self, text: str, width: float, size: float, font: str = "body") -> list[str]:
         """The text broken to a width."""
@@ -164,7 +186,7 @@ class Canvas:
         for i, row in enumerate(rows):
             if left is not None and left <= 0:
                 return
-            self.text(rect.x, y + i * step, row, size * shrink, colour, shown=left)
+            self.text(rect.x, y + i * step, row, size * shrink, colour, shown=left, whole=True)
             left = None if left is None else left - len(row) - 1
 
     def lines(self, points: Sequence[tuple[float, float]], width: float, colour: Colour) -> None:
@@ -195,6 +217,25 @@ class Canvas:
         self.panel(rect, back, radius=rect.h / 2)
         if share > 0.004:
             self.panel(Rect(rect.x, rect.y, max(rect.w * min(share, 1.0), rect.h), rect.h), colour, radius=rect.h / 2)
+
+
+def _brightness(colour: Colour) -> float:
+    return 0.30 * colour[0] + 0.59 * colour[1] + 0.11 * colour[2]
+
+
+def _firm(colour: Colour) -> Colour:
+    """What is more than a veil becomes opaque, and light or dark enough for black or white text on it."""
+    if colour[3] < 0.3:
+        return colour
+    light = _brightness(colour)
+    if light > 0.75:
+        return (1.0, 1.0, 1.0, 1.0)
+    k = min(1.0, 0.30 / max(light, 1e-6))
+    return (colour[0] * k, colour[1] * k, colour[2] * k, 1.0)
+
+
+def _black_or_white(colour: Colour) -> Colour:
+    return (1.0, 1.0, 1.0, colour[3]) if _brightness(colour) > 0.6 else (0.0, 0.0, 0.0, colour[3])
 
 
 @dataclass(frozen=True)
@@ -268,11 +309,15 @@ class Buttons:
     def draw(self, canvas: Canvas, paint: Callable[[Canvas, Button, bool], None] | None = None) -> None:
         """Draw them all, the focused one raised."""
         for button in self.buttons:
-            (paint or _paint_button)(canvas, button, button.id == self.focus)
+            (paint or paint_button)(canvas, button, button.id == self.focus)
 
 
-def _paint_button(canvas: Canvas, button: Button, focused: bool) -> None:
+def paint_button(canvas: Canvas, button: Button, focused: bool) -> None:
+    """A button as most are: paper, raised where it has the focus."""
     rect, alpha = button.rect, 1.0 if button.enabled else 0.55
+    if focused and canvas.contrast:  # a firm double ring: the warm fill is gone
+        canvas.panel(Rect(rect.x - 6, rect.y - 6, rect.w + 12, rect.h + 12), (0.0, 0.0, 0.0, 1.0), radius=18)
+        canvas.panel(Rect(rect.x - 3, rect.y - 3, rect.w + 6, rect.h + 6), (1.0, 1.0, 0.0, 1.0), radius=16)
     fill = PALETTE["paper_warm"] if focused else PALETTE["paper"]
     edge = PALETTE["red"] if focused else PALETTE["line"]
     canvas.panel(
@@ -293,7 +338,7 @@ def _paint_button(canvas: Canvas, button: Button, focused: bool) -> None:
         size = button.size
         while canvas.measure(button.label, size) > rect.w - 24 and size > 10:
             size -= 1
-        top = rect.y + (rect.h - size * canvas.text_scale * 1.27) / 2
+        top = rect.y + (rect.h - size * min(canvas.text_scale, LABEL_MOST) * 1.27) / 2
         canvas.text(rect.x + rect.w / 2, top, button.label, size, fade(INK, alpha), align="center")
     if button.note:
         canvas.text(left, rect.y + rect.h - 24, button.note, 14, fade(PALETTE["faint"], alpha))

@@ -9,25 +9,29 @@ from game.app.director import direct, moment_of, start_direction
 from game.app.gallery import Gallery
 from game.app.input import Action
 from game.app.market import read_stage
-from game.app.opening import AUTOSAVE, take_up
+from game.app.opening import AUTOSAVE, resume_game, take_up
 from game.app.overlays.inspector import Inspector
 from game.app.overlays.timings import FRAMES_SHOWN, draw_timings
 from game.app.passersby import Known, Passersby, load_cast
 from game.app.photo import PhotoMode, fine_factor, photo_folder, photo_path, smaller
 from game.app.picking import Picker
 from game.app.pictures import write_png
+from game.app.reading import save_read
 from game.app.saves import SavedGame, save_game
-from game.app.screens import InspectScreen, TalkScreen, TitleScreen
+from game.app.screens import InspectScreen, OutcomeScreen, SlotsScreen, TableScreen, TalkScreen, TitleScreen
 from game.app.session import Screen, Session
 from game.app.settings import TIMERS, user_folder
+from game.app.slots import QUICK, keep
 from game.app.stage import StageAssets, StageShow
 from game.app.step import step
+from game.app.tells import Tell
 from game.app.ui import Canvas
 from game.app.world import TICK_S, Intent
 from game.core.errors import BadInput
 from game.render import (
     DEFAULT,
     DESIGN_SHARE,
+    Camera,
     Device,
     FontSet,
     FrameView,
@@ -45,6 +49,9 @@ __all__ = ["Window"]
 
 MAX_TICKS_A_FRAME = 5
 """After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
+THUMB_SIZE = (512, 288)
+TELL_SIZE = (384, 300)
+TELL_CAMERA = Camera((0.0, 1.17, 3.02), (0.0, 0.975, 0.0), 14.0)
 
 
 class Window:
@@ -79,6 +86,7 @@ class Window:
         self._language = _speakable(session)
         self._late_s = 0.0
         self._picker: tuple[object, Picker] | None = None
+        self._tells: dict[str, Tell] = {}
         self._tick(None)
 
     def populate(self) -> None:
@@ -133,11 +141,48 @@ class Window:
             calm = self.session.settings.reduced_motion
             self.photo = PhotoMode(self.direction.camera(self.session.world.time_s + self._late_s), reduced_motion=calm)
             return
+        if action.kind == "key" and action.key in {"f6", "f7"}:
+            self._quick(save=action.key == "f6")
+            return
         action = self._in_reference(action)
         if action.at is not None:
             self.session.pointed = self.picker().at(action.at, self.session.afternoon.owned(self.session.stall))
         if not self.inspector.handle(self.session, action):
             self._go(self.screen.handle(self.session, action))
+        if isinstance(self.screen, SlotsScreen) and self.screen.wanted:
+            self._keep(self.screen.wanted)
+            self.screen = self.screen.written()
+
+    def _keep(self, slot: str) -> None:
+        """Save into a slot, with a picture of what was seen last without the interface."""
+        session = self.session
+        if session.designed or not session.afternoon.wishes:
+            return
+        try:
+            keep(
+                user_folder(),
+                slot,
+                saved_game(session),
+                self.renderer.snapshot(replace(self._frame(), hud=None), THUMB_SIZE),
+            )
+            session.message = session.strings("saved")
+            self.gallery.drop(f"slot:{slot}")
+        except BadInput as error:
+            session.message = str(error)
+
+    def _quick(self, *, save: bool) -> None:
+        session, path = self.session, user_folder() / f"{QUICK}.json"
+        if save:
+            self._keep(QUICK)
+        elif path.is_file():
+            try:
+                resume_game(session, path)
+                session.message = session.strings("loaded")
+            except BadInput as error:
+                session.message = session.strings("save_kept", reason=str(error)[:120])
+                return
+            self._follow()
+            self._go(TableScreen.where_it_was(session))
 
     def _photograph(self, photo: PhotoMode) -> None:
         """Take the picture without the interface and say where it is."""
@@ -181,6 +226,7 @@ class Window:
             return  # nothing has begun that could be lost, and something may be saved that has
         try:
             save_game(user_folder() / AUTOSAVE, saved_game(session))
+            save_read(session.read, user_folder())
         except BadInput as error:
             session.message = str(error)
 
@@ -216,6 +262,8 @@ class Window:
         self.show.tick(session.world.body.pose, TICK_S, session.world.body)
         if self.crowd is not None and self.renderer.level.people:
             self.crowd.tick(session.world)
+        assert self.show.puppet is not None
+        session.watch.tick(session.assets, session.world, self.show.puppet.after[0])
         if intent.choice is not None:
             self._autosave()
         self._go(self.screen.after_tick(session))
@@ -255,9 +303,11 @@ class Window:
         session = self.session
         params = session.world.body.face_params
         assert params is not None
+        played = self.screen.played()
         now_s = session.world.time_s + self._late_s
         return self.show.frame(
-            params,
+            params if played is None else played[1],
+            matrices=None if played is None else played[0],
             camera=self.direction.camera(now_s) if self.photo is None else self.photo.camera(),
             share=self._late_s / TICK_S,
             show_face=session.world.mode != "body",
@@ -283,6 +333,8 @@ class Window:
     def _paint_pictures(self) -> None:
         """Pictures of the stalls for the map: one a frame, where a hitch is not seen."""
         market = self.session.market
+        if isinstance(self.screen, OutcomeScreen):
+            self._paint_tells(self.screen)
         if self.screen.scene not in {"title", "market"} or len(market.order) < 2:
             return
         if "backdrop" not in self.gallery.names():
@@ -291,9 +343,25 @@ class Window:
         owned = {stall.id: self.session.afternoon.owned(stall.id) for stall in stalls}
         self.cards.paint_next(stalls, owned, self.renderer.level, self.session.afternoon.seed)
 
+    def _paint_tells(self, screen: OutcomeScreen) -> None:
+        """The moments in which the body told most, one a frame."""
+        for i, tell in enumerate(screen.watch.tells):
+            name = f"tell:{i}"
+            if self._tells.get(name) is not tell:
+                view = self.show.frame(
+                    tell.params,
+                    matrices=tell.matrices,
+                    camera=TELL_CAMERA,
+                    hidden_items=self.stage.gone(self.session.afternoon.owned(self.session.stall)),
+                    day_share=self.session.day_share,
+                )
+                self.gallery.put(name, self.renderer.snapshot(view, TELL_SIZE))
+                self._tells[name] = tell
+                return
+
     def _draw_hud(self, hud: Hud) -> None:
         settings = self.session.settings
-        canvas = Canvas(hud, settings.language, settings.ui_scale, self.gallery)
+        canvas = Canvas(hud, settings.language, settings.ui_scale, self.gallery, settings.high_contrast)
         if self.photo is not None:
             self.photo.draw(self.session.strings, canvas)
             return

@@ -107,7 +107,8 @@ class World:
     """Everything that changes while the game runs; ``step`` makes the next one from it.
 
     tick: fixed steps done. felt, shown: (6,) and (7,) as they stand in the body and on the face now, following
-    ``felt_target`` and ``shown_target``. burst_s: world time at which the present reaction peaks. timers: factor on
+    ``felt_target`` and ``shown_target``. burst_s: world time at which the present reaction peaks. habit: a
+    feeling that a habit of the person looks like, seen while they greet. timers: factor on
     the time that timed choices give, 0 for none; waited: ticks for which the present choice has stood.
     """
 
@@ -129,6 +130,7 @@ class World:
     timers: float = 0.0
     waited: int = 0
     marks: tuple[Mark, ...] = ()
+    habit: str = ""
 
     @property
     def time_s(self) -> float:
@@ -197,6 +199,7 @@ def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
         felt_target=felt,
         shown_target=shown,
         marks=(first_mark(assets.talk, talk, world.time_s),),
+        habit="",
     )
 
 

@@ -10,7 +10,7 @@ from game.core.errors import BadInput
 
 
 def test_settings_come_back_as_saved(tmp_path) -> None:
-    settings = Settings(language="ja", text_speed="fast", ui_scale=1.5, captions=True)
+    settings = Settings(language="ja", text_speed="fast", ui_scale=1.5, captions=True, keys={"o": "x"})
     assert save_settings(settings, tmp_path) is None
     assert load_settings(tmp_path) == (settings, None)
 
@@ -55,3 +55,27 @@ def test_every_text_exists_in_both_languages() -> None:
     assert english("purse", money="¥1,240") == "Purse ¥1,240"
     with pytest.raises(BadInput, match=r"en \| ja"):
         english.switched("fr")
+
+
+def test_keys_change_places_and_nothing_is_lost() -> None:
+    import pygame
+
+    from game.app.input import COMMANDS, action_of, command_of
+
+    assert command_of("o", {}) == "o"
+    keys = {"o": "p", "p": "o"}
+    assert command_of("o", keys) == "p"
+    assert command_of("p", keys) == "o"
+    assert command_of("w", keys) == "w"
+    assert command_of("o", {"o": "x"}) == "", "a key that was given away does nothing"
+    pressed = pygame.event.Event(pygame.KEYDOWN, {"key": pygame.K_x, "mod": 0})
+    action = action_of(pressed, 1.0, {"o": "x"})
+    assert action is not None
+    assert (action.key, action.raw) == ("o", "x")
+    assert len(set(COMMANDS)) == len(COMMANDS)
+    assert "up" not in COMMANDS
+
+
+def test_nonsense_among_the_keys_is_left_out(tmp_path) -> None:
+    (tmp_path / "settings.json").write_text('{"keys": {"o": "x", "zz": "y", "p": 3, "w": ""}}', encoding="utf-8")
+    assert load_settings(tmp_path)[0].keys == {"o": "x"}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
+from game.app.score import standing
 from game.app.session import Session
 from game.app.ui import INK, PALETTE, Button, Canvas, Colour, Rect, fade, hex_colour
 
@@ -129,12 +130,11 @@ def _draw_sign(session: Session, canvas: Canvas, sign: Rect, name: str) -> None:
 def remembered(session: Session, stall: str) -> str:
     """What the player remembers of a person, in one line."""
     known = session.afternoon.at(stall)
-    if known.talks == 0:
+    how = standing(known)
+    if how == "unmet":
         return session.strings("met_before" if known.memory is not None else "not_met")
-    if known.annoyance >= 0.75:
-        return session.strings("left_sore")
     if known.annoyance > 0:
-        return session.strings("left_cooling")
-    if known.deals and known.trust >= 0.5:
+        return session.strings("left_sore" if how == "sore" else "left_cooling")
+    if how == "warm":
         return session.strings("left_warm")
     return session.strings("left_deal" if known.deals else "left_even")

@@ -2,21 +2,52 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
 from game.app.input import Action
 from game.app.overlays import draw_overlays
 from game.app.overlays.timer import draw_timer
+from game.app.reading import Reader
 from game.app.screens.inspect import InspectScreen
-from game.app.session import Screen, Session
+from game.app.session import Screen, Session, change_setting, take_back
 from game.app.talk import MONEY_STEP, Choice, ask_money
-from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
+from game.app.tokens import draw_token
+from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade, paint_button
 from game.app.world import Intent
+from game.core.emotion_space import EMOTIONS
+from game.face import FaceParams
 from game.story import Choice as StoryChoice
 
 __all__ = ["TalkScreen"]
 
-CARD_WIDTH = 372.0
+CARD_WIDTH, WIDER = 372.0, 130.0
+"""The cards' width, and how much wider they become where letters are twice as large."""
 OVERLAY_KEYS = {"f1": "feelings", "f2": "units", "f3": "networks"}
 STANDING = {"offer": "b", "wait": "w", "leave": "g"}
+
+
+def grown(canvas: Canvas) -> float:
+    """How far the player has enlarged the text: 0 as drawn, 1 twice as large."""
+    return min(max(canvas.text_scale - 1.0, 0.0), 1.0)
+
+
+def card_width(canvas: Canvas) -> float:
+    """Width of the cards on the right."""
+    return CARD_WIDTH + WIDER * grown(canvas)
+
+
+def words_height(canvas: Canvas) -> float:
+    """Height of the box with what is being said."""
+    return 118.0 + 52.0 * grown(canvas)
+
+
+def next_token(token: str, *, back: bool = False) -> str:
+    """The token after another, around the circle; none lies between the last and the first."""
+    around = ("", *EMOTIONS)
+    return around[(around.index(token) + (-1 if back else 1)) % len(around)]
 
 
 def _takes_up(session: Session, action: Action) -> bool:
@@ -37,6 +68,8 @@ class TalkScreen:
         self._with_offer = False
         self._amount = 0
         self._intent = Intent()
+        self._guess = ""
+        self._reader = Reader()
 
     @property
     def offering(self) -> bool:
@@ -49,6 +82,20 @@ class TalkScreen:
             from game.app.screens.title import TitleScreen
 
             return TitleScreen()
+        if action.kind == "key" and action.key == "h" and session.world.backlog:
+            from game.app.screens.history import HistoryScreen
+
+            return HistoryScreen(self)
+        if action.kind == "key" and action.key == "tab":
+            self._reader.skipping = not self._reader.skipping
+            return None
+        if action.kind == "key" and action.key == "a":
+            change_setting(session, "auto_forward")
+            return None
+        if action.kind == "key" and action.key == "backspace":
+            self._guess = ""
+            take_back(session)
+            return None
         if action.kind == "key" and action.key in OVERLAY_KEYS:
             session.overlays ^= {OVERLAY_KEYS[action.key]}
             return None
@@ -73,13 +120,19 @@ class TalkScreen:
         if action.kind in {"left", "right"}:
             self._turn(session, step if action.kind == "right" else -step)
             return
+        if action.kind == "key" and action.key == "t":
+            self._guess = next_token(self._guess, back=action.fast)
+            return
         if action.kind == "wheel":
             self._turn(session, action.amount * MONEY_STEP)
             return
         pressed = self._buttons.handle(action)
         if pressed is None:
             return
-        if pressed == "dial":
+        if pressed.startswith("token:"):
+            feeling = pressed.partition(":")[2]
+            self._guess = "" if feeling == self._guess else feeling
+        elif pressed == "dial":
             self._with_offer = not self._with_offer
         elif pressed in {"less", "more"}:
             self._turn(session, (-1 if pressed == "less" else 1) * MONEY_STEP * (10 if action.fast else 5))
@@ -92,7 +145,8 @@ class TalkScreen:
         assert session.world.talk is not None
         act = session.world.talk.beat.choice(choice_id).act
         carries = act == "offer" or (self._with_offer and act not in {"wait", "leave"})
-        self._intent = Intent(choice=Choice(choice_id, self._amount if carries else None))
+        self._intent = Intent(choice=Choice(choice_id, self._amount if carries else None), guess=self._guess)
+        self._guess = ""
         if carries:
             self._with_offer = False
 
@@ -110,10 +164,17 @@ class TalkScreen:
         return intent
 
     def after_tick(self, session: Session) -> Screen | None:
+        settings = session.settings
+        auto, everything = settings.auto_forward, settings.skip_unread
+        if self._reader.goes_on(session.world, session.stall, session.read, auto=auto, everything=everything):
+            self._intent = replace(self._intent, proceed=True)
         talk = session.world.talk
         if talk is not None and (self._amount == 0 or self._amount > self._limit(session)):
             start = talk.bargain.offer or 0.6
             self._amount = min(round(start * talk.list_price / MONEY_STEP) * MONEY_STEP, self._limit(session))
+        return None
+
+    def played(self) -> tuple[NDArray[np.float32], FaceParams] | None:
         return None
 
     # --- drawing -------------------------------------------------------------------------------------------------
@@ -132,7 +193,7 @@ class TalkScreen:
         s, talk = session.strings, session.world.talk
         if talk is None:
             return
-        box = Rect(canvas.width - CARD_WIDTH - 20, 18, CARD_WIDTH, 74)
+        box = Rect(canvas.width - card_width(canvas) - 20, 18, card_width(canvas), 74)
         canvas.panel(box, border=2, shadow=10)
         item = session.assets.talk.script.items[talk.item]
         canvas.text(box.x + 16, box.y + 9, item.name.get(s.language), 19, INK, font="bold")
@@ -151,18 +212,18 @@ class TalkScreen:
     def _draw_choices(self, session: Session, canvas: Canvas) -> None:
         s, talk = session.strings, session.world.talk
         assert talk is not None
-        left, y = canvas.width - CARD_WIDTH - 20, 106.0
+        left, y = canvas.width - card_width(canvas) - 20, 106.0
         options = list(talk.beat.choices)
         lines = [c for c in options if c.act not in STANDING]
         buttons: list[Button] = []
-        height = 74.0 if len(lines) <= 4 else 60.0
+        height = (74.0 if len(lines) <= 4 else 60.0) + 16.0 * grown(canvas)
         for i, choice in enumerate(lines):
             note = choice.reason.get(s.language) if choice.reason is not None and not choice.available else ""
             buttons.append(
                 Button(
                     choice.id,
                     self._shown(session, choice),
-                    Rect(left, y, CARD_WIDTH, height),
+                    Rect(left, y, card_width(canvas), height),
                     enabled=choice.available,
                     key=str(i + 1),
                     badge=str(i + 1),
@@ -174,35 +235,62 @@ class TalkScreen:
         buttons += self._dial(session, canvas, left, y)
         y += 56
         standing = [c for c in options if c.act in STANDING]
-        width = (CARD_WIDTH - 8 * (len(standing) - 1)) / max(len(standing), 1)
+        width = (card_width(canvas) - 8 * (len(standing) - 1)) / max(len(standing), 1)
         for i, choice in enumerate(standing):
             place = Rect(left + i * (width + 8), y, width, 44)
             key = STANDING[choice.act]
             buttons.append(Button(choice.id, s(choice.act), place, enabled=choice.available, key=key, size=17))
+        buttons += self._tokens(session, canvas)
         self._buttons.lay(buttons)
-        self._buttons.draw(canvas)
-        draw_timer(session, canvas, Rect(left, 96, CARD_WIDTH, 6))
+        self._buttons.draw(canvas, self._paint)
+        draw_timer(session, canvas, Rect(left, 96, card_width(canvas), 6))
         # What a short button will say, in full, before it is said.
         focused = next((c for c in standing if c.id == self._buttons.focus), None)
         if focused is not None:
-            words = Rect(left, y + 50, CARD_WIDTH, 42)
+            words = Rect(left, y + 50, card_width(canvas), 42)
             canvas.panel(words, fade(PALETTE["shade"], 1.2), radius=12)
-            room = Rect(left + 14, y + 54, CARD_WIDTH - 28, 36)
+            room = Rect(left + 14, y + 54, card_width(canvas) - 28, 36)
             canvas.paragraph(room, self._shown(session, focused), 16, PALETTE["white"], middle=True)
-        hint = Rect(left, canvas.height - 62, CARD_WIDTH, 46)
+        hint = Rect(left, canvas.height - 62, card_width(canvas), 46)
         canvas.panel(hint, fade(PALETTE["shade"], 0.8), radius=12)
-        canvas.paragraph(Rect(left + 12, canvas.height - 58, CARD_WIDTH - 24, 40), s("hint_talk"), 13, PALETTE["white"])
+        canvas.paragraph(
+            Rect(left + 12, canvas.height - 58, card_width(canvas) - 24, 40), s("hint_talk"), 13, PALETTE["white"]
+        )
+
+    def _tokens(self, session: Session, canvas: Canvas) -> list[Button]:
+        """The seven tokens above the subtitles; laying one costs nothing."""
+        s, size = session.strings, 34.0
+        words = s(self._guess) if self._guess else s("token_hint")
+        label = canvas.measure(words, 15) + 20
+        width = 7 * (size + 8) + label + 14
+        left, y = 20 + (canvas.width - card_width(canvas) - 60 - width) / 2, canvas.height - 90.0 - words_height(canvas)
+        canvas.panel(Rect(left, y, width, size + 14), fade(PALETTE["shade"], 0.95), radius=24)
+        canvas.text(left + 20, y + 13, words, 15, PALETTE["white"])
+        x = left + label + 14
+        return [
+            Button(f"token:{name}", "", Rect(x + i * (size + 8), y + 7, size, size)) for i, name in enumerate(EMOTIONS)
+        ]
+
+    def _paint(self, canvas: Canvas, button: Button, focused: bool) -> None:
+        name = button.id.partition(":")[2]
+        if not name:
+            paint_button(canvas, button, focused)
+            return
+        x, y = button.rect.middle
+        if focused:
+            canvas.dot(x, y, button.rect.w / 2 + 3, PALETTE["gold"])
+        draw_token(canvas, x, y, button.rect.w / 2 - 1, name, chosen=name == self._guess)
 
     def _dial(self, session: Session, canvas: Canvas, left: float, y: float) -> list[Button]:
         s = session.strings
         text = s("offer_with", money=session.money(self._amount)) if self._with_offer else s("no_offer")
         if self._with_offer:
-            canvas.panel(Rect(left - 4, y - 4, CARD_WIDTH + 8, 56), fade(PALETTE["red"], 0.9), radius=18)
+            canvas.panel(Rect(left - 4, y - 4, card_width(canvas) + 8, 56), fade(PALETTE["red"], 0.9), radius=18)
         return [
             Button("less", "−", Rect(left, y, 44, 48), size=24),
-            Button("dial", text, Rect(left + 50, y, CARD_WIDTH - 168, 48), key="o", size=17),
-            Button("more", "+", Rect(left + CARD_WIDTH - 112, y, 44, 48), size=24),
-            Button("meet", s("meet"), Rect(left + CARD_WIDTH - 62, y, 62, 48), key="p", size=14),
+            Button("dial", text, Rect(left + 50, y, card_width(canvas) - 168, 48), key="o", size=17),
+            Button("more", "+", Rect(left + card_width(canvas) - 112, y, 44, 48), size=24),
+            Button("meet", s("meet"), Rect(left + card_width(canvas) - 62, y, 62, 48), key="p", size=14),
         ]
 
     def _shown(self, session: Session, choice: StoryChoice) -> str:
@@ -216,18 +304,20 @@ class TalkScreen:
         if not words:
             return
         width = canvas.measure(words, 16) + 32
-        left = 20 + (canvas.width - CARD_WIDTH - 60 - width) / 2
-        canvas.panel(Rect(left, canvas.height - 192, width, 30), fade(PALETTE["shade"], 1.2), radius=15)
-        canvas.text(left + 16, canvas.height - 187, words, 16, PALETTE["white"])
+        left = 20 + (canvas.width - card_width(canvas) - 60 - width) / 2
+        canvas.panel(
+            Rect(left, canvas.height - 128 - words_height(canvas), width, 30), fade(PALETTE["shade"], 1.2), radius=15
+        )
+        canvas.text(left + 16, canvas.height - 123 - words_height(canvas), words, 16, PALETTE["white"])
 
     def _draw_subtitles(self, session: Session, canvas: Canvas) -> None:
         world, s = session.world, session.strings
         line = world.speech.line if world.speech is not None else (world.backlog[-1] if world.backlog else None)
         if line is None:
             return
-        room = canvas.width - CARD_WIDTH - 60
-        width = min(room, 700.0)
-        box = Rect(20 + (room - width) / 2, canvas.height - 138, width, 118)
+        room = canvas.width - card_width(canvas) - 60
+        width = min(room, 700.0 + 60.0 * grown(canvas))
+        box = Rect(20 + (room - width) / 2, canvas.height - 20 - words_height(canvas), width, words_height(canvas))
         resting = world.speech is None
         canvas.panel(box, fade(PALETTE["paper"], 0.86 if resting else 1.0), border=3, shadow=12, radius=20)
         names = {
@@ -246,8 +336,8 @@ class TalkScreen:
         if world.speech is not None and not world.speech.hurried:
             shown = world.speech.timed.visible(world.time_s - world.speech.started_s)
         colour = INK if line.speaker != "narrator" else PALETTE["faint"]
-        canvas.paragraph(Rect(box.x + 28, box.y + 22, box.w - 70, 86), text, 24, colour, shown=shown)
+        canvas.paragraph(Rect(box.x + 28, box.y + 22, box.w - 70, box.h - 32), text, 24, colour, shown=shown)
         if not resting or world.over:
             beat = 0.5 + 0.5 * abs((world.time_s * 1.4) % 2.0 - 1.0)
-            x, y = box.x + box.w - 40, box.y + 88 + 4 * beat
+            x, y = box.x + box.w - 40, box.y + box.h - 30 + 4 * beat
             canvas.lines([(x, y), (x + 9, y + 9), (x + 18, y)], 4, PALETTE["red"])

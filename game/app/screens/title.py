@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from game.app.input import Action
-from game.app.session import MenuScreen, Screen, Session
-from game.app.settings import CHOICES, Settings, save_settings
+from game.app.screens.keys import KeysScreen
+from game.app.screens.slots import SlotsScreen
+from game.app.session import MenuScreen, Screen, Session, change_setting
+from game.app.settings import CHOICES
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
 
 __all__ = ["SettingsScreen", "TitleScreen"]
@@ -33,6 +33,8 @@ class TitleScreen(MenuScreen):
             change_setting(session, "language")
         elif pressed == "settings":
             return SettingsScreen(self)
+        elif pressed in {"save", "load"}:
+            return SlotsScreen(self, saving=pressed == "save")
         elif pressed == "quit":
             session.running = False
         return None
@@ -53,9 +55,10 @@ class TitleScreen(MenuScreen):
         entries = ["play"]
         if session.world.talk is not None or session.afternoon.wishes:
             entries.insert(0, "continue")
-        entries += ["language", "settings", "quit"]
+            entries.append("save")
+        entries += ["load", "language", "settings", "quit"]
         self._buttons.lay(
-            [Button(name, s(name), Rect(left, 334 + i * 60, width, 50), size=20) for i, name in enumerate(entries)]
+            [Button(name, s(name), Rect(left, 326 + i * 54, width, 46), size=19) for i, name in enumerate(entries)]
         )
         self._buttons.draw(canvas)
         if session.market.avatar is not None:
@@ -70,7 +73,7 @@ class TitleScreen(MenuScreen):
             )
             canvas.text(canvas.width - 24 - wide, canvas.height - 29, line, 12, PALETTE["paper_warm"])
         if session.message:
-            canvas.text(left, canvas.height - 40, session.message, 15, PALETTE["white"])
+            canvas.text(430, canvas.height - 40, session.message, 15, PALETTE["white"])
 
 
 def first_screen(session: Session) -> Screen:
@@ -87,26 +90,31 @@ class SettingsScreen(MenuScreen):
 
     def __init__(self, before: Screen) -> None:
         self._before = before
-        self._buttons = Buttons()
+        self._buttons = Buttons(across=True)
 
     def handle(self, session: Session, action: Action) -> Screen | None:
         pressed = self._buttons.handle(action)
         if action.kind == "back" or pressed == "back":
             return self._before
+        if pressed == "keys":
+            return KeysScreen(self)
         if pressed in CHOICES:
             change_setting(session, pressed)
         return None
 
     def draw(self, session: Session, canvas: Canvas) -> None:
         s = session.strings
-        left = (canvas.width - 460) / 2
-        names = ["language", "text_speed", "fullscreen", "ui_scale", "captions", "reduced_motion", "timers", "quality"]
-        canvas.panel(Rect(left - 40, 96, 540, 92 + 62 * (len(names) + 1)), border=3, shadow=14)
+        left = (canvas.width - 960) / 2
+        names = list(CHOICES)
+        rows = (len(names) + 1) // 2
+        canvas.panel(Rect(left - 40, 96, 1040, 166 + 62 * rows), border=3, shadow=14)
         canvas.text(canvas.width / 2, 116, s("settings"), 32, INK, font="title", align="center")
         buttons = [
-            Button(name, _label(session, name), Rect(left, 172 + i * 62, 460, 52)) for i, name in enumerate(names)
+            Button(name, _label(session, name), Rect(left + (i // rows) * 490, 172 + (i % rows) * 62, 470, 52))
+            for i, name in enumerate(names)
         ]
-        buttons.append(Button("back", s("back"), Rect(left + 130, 172 + len(names) * 62, 200, 46)))
+        buttons.append(Button("keys", s("keys"), Rect(canvas.width / 2 - 230, 182 + rows * 62, 220, 48)))
+        buttons.append(Button("back", s("back"), Rect(canvas.width / 2 + 10, 182 + rows * 62, 220, 48)))
         self._buttons.lay(buttons)
         self._buttons.draw(canvas)
 
@@ -120,13 +128,3 @@ def _label(session: Session, name: str) -> str:
     if isinstance(value, float):
         return s(name, value=f"{value:.0%}")
     return s(name, value=s(value) if value in s.texts else value)
-
-
-def change_setting(session: Session, name: str) -> None:
-    """Move a setting to its next value, apply what is ours to apply, and keep it."""
-    settings: Settings = session.settings.next(name)
-    session.settings = settings
-    if name == "language":
-        session.strings = session.strings.switched(settings.language)
-        session.world = replace(session.world, language=settings.language)
-    session.message = save_settings(settings) or ""
