@@ -22,7 +22,7 @@ from game.core import ASSETS, EMOTIONS
 from game.core.errors import BadInput, Where
 from game.embos.analysis import annotated_s, shares, transitions, units_of
 from game.embos.annotations import Take, read_takes
-from game.embos.clips import pack_clips, same_clips
+from game.embos.clips import TakeClip, pack_clips, same_clips
 from game.embos.findings import Findings
 from game.embos.repertoire import Behaviour, read_repertoire
 from game.embos.statistics import ALPHA
@@ -30,7 +30,7 @@ from game.embos.units import LAYERS, MotionUnit
 from game.embos.units_file import units_text
 from game.formats.files import write_text
 
-__all__ = ["add_arguments", "run"]
+__all__ = ["add_arguments", "counted", "run", "write_units"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -59,31 +59,58 @@ def run(args: argparse.Namespace) -> int:
     findings = Findings()
     inside = folder / "behaviours.yaml"
     beside = folder.resolve().parent / "behaviours.yaml"
-    repertoire = read_repertoire(args.behaviours or (inside if inside.exists() else beside), findings)
-    takes = read_takes(folder, repertoire, findings)
+    behaviours = args.behaviours or (inside if inside.exists() else beside)
+    if args.learning_curve is not None:
+        repertoire = read_repertoire(behaviours, findings)
+        takes = read_takes(folder, repertoire, findings)
+        return _report(findings, as_json=args.json) if len(findings) else _learning_curve(takes, repertoire, args)
+    takes, units = counted(folder, behaviours, findings, args.alpha)
     if len(findings):
         return _report(findings, as_json=args.json)
-    if args.learning_curve is not None:
-        return _learning_curve(takes, repertoire, args)
-    units = units_of(takes, repertoire, args.alpha)
+    differs = _differs(out, *_contents(takes, units))
+    if differs and not args.check:
+        write_units(takes, units, out)
+    _summary(takes, units, out, differs, check=args.check, as_json=args.json)
+    return 1 if args.check and differs else 0
+
+
+def counted(
+    folder: Path, behaviours: Path, findings: Findings, alpha: float = ALPHA
+) -> tuple[list[Take], list[MotionUnit]]:
+    """The takes of a folder and their units; what is wrong goes into the findings, and then there are no units."""
+    repertoire = read_repertoire(behaviours, findings)
+    takes = read_takes(folder, repertoire, findings)
+    if len(findings):
+        return takes, []
+    units = units_of(takes, repertoire, alpha)
     for layer in LAYERS:
         if not any(unit.layer == layer for unit in units):
             findings.add(BadInput("takes", where=Where(folder), expected=f"spans of the layer {layer}", seen="none"))
-    if len(findings):
-        return _report(findings, as_json=args.json)
-    text = units_text(units, transitions(takes))
-    bank = {take.name: take.clip for take in takes}
+    return takes, units
+
+
+def _contents(takes: list[Take], units: list[MotionUnit]) -> tuple[str, dict[str, TakeClip]]:
+    return units_text(units, transitions(takes)), {take.name: take.clip for take in takes}
+
+
+def _differs(out: Path, text: str, bank: Mapping[str, TakeClip]) -> list[str]:
     clips = out.parent / "clips.npz"
     differs = [str(out)] if not out.exists() or out.read_bytes() != text.encode() else []
-    differs += [str(clips)] if not same_clips(clips, bank) else []
-    if differs and not args.check:
+    return differs + ([str(clips)] if not same_clips(clips, bank) else [])
+
+
+def write_units(takes: list[Take], units: list[MotionUnit], out: Path) -> list[str]:
+    """units.yaml at ``out`` and clips.npz beside it, where they differ from what is there -> the files that did."""
+    text, bank = _contents(takes, units)
+    clips = out.parent / "clips.npz"
+    differs = _differs(out, text, bank)
+    if differs:
         out.parent.mkdir(parents=True, exist_ok=True)
         temporary = clips.with_name(f".{clips.name}.new")
         temporary.write_bytes(pack_clips(bank))
         write_text(out, text)
         temporary.replace(clips)
-    _summary(takes, units, out, differs, check=args.check, as_json=args.json)
-    return 1 if args.check and differs else 0
+    return differs
 
 
 def _learning_curve(takes: list[Take], repertoire: Mapping[str, Behaviour], args: argparse.Namespace) -> int:

@@ -19,6 +19,7 @@ import argparse
 from pathlib import Path
 
 from game.app.arguments import parse_size
+from game.core.errors import MissingPart
 from game.core.paths import ASSETS
 
 __all__ = ["add_arguments", "run"]
@@ -28,7 +29,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``annotate``."""
     motion = ASSETS / "motion"
     parser.add_argument("takes", nargs="*", type=Path, metavar="TAKE", help="BVH files, or their annotations")
-    parser.add_argument("--behaviours", type=Path, default=motion / "behaviours.yaml", help="the repertoire")
+    parser.add_argument(
+        "--behaviours",
+        type=Path,
+        help="the repertoire (default: behaviours.yaml in or beside the takes' folder, else the shipped one)",
+    )
     parser.add_argument("--learn", type=Path, default=motion / "takes", metavar="DIR", help="annotated takes")
     parser.add_argument("--author", default="", help="who annotates (kept in the file)")
     parser.add_argument("--size", type=parse_size, default=(1440, 900), metavar="WxH", help="window size")
@@ -54,4 +59,12 @@ def run(args: argparse.Namespace) -> int:
         return command.export(args, takes)
     if args.import_from is not None:
         return command.import_from(args, takes)
-    return command.compare(args, takes)
+    if args.compare is not None:
+        return command.compare(args, takes)
+    try:
+        from game.tools.annotate.desk_window import open_desk
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] != "imgui_bundle":
+            raise
+        raise MissingPart("the desk needs imgui-bundle: pip install 'mental-communication-game[tools]'") from None
+    return open_desk(args, takes)

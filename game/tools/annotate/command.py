@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from game.core.errors import BadInput
+from game.core.paths import ASSETS
 from game.embos.annotations import Take, read_takes, reference_clip
 from game.embos.clips import TakeClip
 from game.embos.findings import Findings
@@ -20,6 +21,7 @@ from game.formats.bvh import read_bvh
 from game.tools.annotate import elan, table
 from game.tools.annotate.agreement import agreement
 from game.tools.annotate.automatic import Annotator, Example, propose
+from game.tools.annotate.desk_repertoire import project_behaviours
 from game.tools.annotate.document import Document
 from game.tools.annotate.files import open_document, read_document, save
 from game.tools.annotate.trial import Score, leave_one_out
@@ -42,7 +44,8 @@ def checked_takes(args: argparse.Namespace) -> list[Path]:
 def repertoire_of(args: argparse.Namespace) -> dict[str, Behaviour]:
     """The behaviours spans may carry. Raises a BadInput that also says how many more there are."""
     findings = Findings()
-    repertoire = read_repertoire(args.behaviours, findings)
+    shipped = ASSETS / "motion" / "behaviours.yaml"
+    repertoire = read_repertoire(args.behaviours or project_behaviours(args.takes, shipped), findings)
     findings.raise_first()
     return repertoire
 

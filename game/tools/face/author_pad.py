@@ -10,9 +10,9 @@ from game.app.ui import FEELING_COLOURS
 from game.core import EMOTIONS
 from game.face import Face
 from game.tools.face.author import Author
-from game.tools.face.author_style import Fonts, colour
 from game.tools.face.pad import Pad, ellipse
 from game.tools.face.sheet import rank_colour
+from game.tools.windows.style import Fonts, colour
 
 __all__ = ["PadWidget"]
 

@@ -19,11 +19,11 @@ from game.face import Face, load_face
 from game.render import Device, level_named
 from game.tools.face.author import Author, Change
 from game.tools.face.author_pad import PadWidget
-from game.tools.face.author_style import FONT_SIZE, colour, load_fonts, set_style
 from game.tools.face.gallery import Gallery
 from game.tools.face.heads import HeadStudio
-from game.tools.face.imgui_backend import ImguiBackend
 from game.tools.face.sheet import part_names, rank_colour
+from game.tools.windows.imgui_backend import ImguiBackend
+from game.tools.windows.style import FONT_SIZE, colour, load_fonts, set_style
 
 __all__ = ["AuthorWindow", "open_author"]
 

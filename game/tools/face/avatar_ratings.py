@@ -20,7 +20,7 @@ from game.face import RatedExpression, emotion_recipes, fit_gaussian, load_face,
 from game.formats.files import write_text
 from game.render.avatar_model import AvatarLook
 from game.tools.face.ratings_file import Rating, read_ratings
-from game.tools.face.yaml_edit import check_text
+from game.tools.yaml_lines import check_text
 
 __all__ = ["expressions_to_rate", "fit_avatar", "fit_expressions", "look_of"]
 

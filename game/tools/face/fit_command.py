@@ -17,7 +17,8 @@ from game.tools.face.plots import need_matplotlib, plot_errors, plot_fit
 from game.tools.face.ratings_file import COLUMNS, face_code, format_rating, format_row, read_ratings
 from game.tools.face.simulate import ErrorRow, errors_by_raters, simulate_ratings
 from game.tools.face.sitting import single_part_faces, whole_faces
-from game.tools.face.yaml_edit import check_parts, check_text, check_weights, with_gaussians, with_weights
+from game.tools.face.yaml_edit import check_parts, check_weights, with_gaussians, with_weights
+from game.tools.yaml_lines import check_text
 
 __all__ = ["fit", "simulate"]
 

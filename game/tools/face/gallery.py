@@ -9,7 +9,7 @@ from time import perf_counter
 from game.face import INDEX, Face, Parts
 from game.tools.face.author import Change
 from game.tools.face.heads import HeadStudio
-from game.tools.face.imgui_backend import ImguiBackend, ImguiTexture
+from game.tools.windows.imgui_backend import ImguiBackend, ImguiTexture
 
 __all__ = ["Gallery"]
 

@@ -6,8 +6,7 @@ Each change is made in the text, read back by the game's own reader, and only th
 from __future__ import annotations
 
 import re
-import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,81 +15,23 @@ from numpy.typing import NDArray
 from game.core import BadInput, Where
 from game.face import REGIONS, Face, Parts, load_expressions, load_parts, load_weights
 from game.formats import Node, parse_yaml
-from game.formats.files import decode_utf8, read_bytes, write_text
 from game.story.surroundings import load_faces
 from game.tools.face.fitting import FaceFit, PartFit
+from game.tools.yaml_lines import YamlLines, read_source, write_checked
 
 __all__ = [
     "NEW_EXPRESSIONS",
     "add_expression",
     "add_to_dialogue",
     "check_name",
-    "check_text",
     "with_gaussians",
     "with_weights",
-    "write_checked",
 ]
 
-MAX_BYTES = 2_000_000
 NEW_EXPRESSIONS = (
     "# Named expressions for the dialogue (`face: smirk`): one part per region.\nversion: 1\nexpressions:\n"
 )
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
-_MARK = re.compile(r"\s*# rated by \d+$")
-
-
-def read_source(path: Path) -> str:
-    """A YAML file's text."""
-    return decode_utf8(read_bytes(path, max_bytes=MAX_BYTES, what="YAML file"), path)
-
-
-class _Lines:
-    """A text as lines, with edits at the places that its nodes name (1-based lines and columns)."""
-
-    def __init__(self, text: str, path: Path) -> None:
-        self.lines = text.splitlines()
-        self.root = parse_yaml(text, path)
-        self._edits: list[tuple[int, int, str, Callable[[str], str]]] = []
-
-    def replace(self, node: Node, text: str, mark: str = "") -> None:
-        """Put ``text`` in a value's place: a scalar, or a list in brackets on one line. ``mark`` comments the line."""
-        line, col = node.where.line or 1, node.where.col or 1
-
-        def change(row: str) -> str:
-            before, after = row[: col - 1], row[col - 1 :]
-            if node.kind == "sequence":
-                if not after.startswith("[") or "]" not in after:
-                    raise BadInput(where=node.where, expected="a list in brackets on one line", seen=after)
-                rest = after[after.index("]") + 1 :]
-            else:
-                quoted = re.match(r"\"[^\"]*\"|'[^']*'", after)
-                rest = after[quoted.end() :] if quoted else after[len(node.raw) :]
-            if mark and (not rest.strip() or _MARK.fullmatch(rest)):
-                rest = f"  {mark}"
-            return before + text + rest
-
-        self._edits.append((line, col, "", change))
-
-    def insert_after(self, node: Node, key: str, value: str) -> None:
-        """A new key behind the value of ``node`` in the same mapping, in the mapping's own style."""
-        line, col = node.where.line or 1, node.where.col or 1
-
-        def change(row: str) -> str:
-            before = row[: col - 1]
-            own_line = re.fullmatch(r"(\s*)[\w]+:\s*", before)
-            if own_line:
-                return f"{row}\n{own_line[1]}{key}: {value}"
-            end = row.index("]", col - 1) + 1
-            return f"{row[:end]}, {key}: {value}{row[end:]}"
-
-        self._edits.append((line, col, key, change))
-
-    def text(self) -> str:
-        """The text with all edits made, the last place first so that columns stay true."""
-        # At one place, the insertion behind a value comes before the value itself changes length.
-        for line, _, _, change in sorted(self._edits, key=lambda e: (e[0], e[1], e[2]), reverse=True):
-            self.lines[line - 1] = change(self.lines[line - 1])
-        return "\n".join(self.lines) + "\n"
 
 
 def _number(value: float) -> str:
@@ -103,14 +44,14 @@ def _pair(values: NDArray[np.float64]) -> str:
 
 def with_gaussians(path: Path, fit: FaceFit) -> str:
     """The text of parts.yaml with the rated parts' Gaussians, and who rated. Affinities stay the designers'."""
-    lines = _Lines(read_source(path), path)
+    lines = YamlLines(read_source(path), path)
     lines.replace(lines.root["ratings"], '"' + fit.label.replace('"', "'") + '"')
     for part in fit.parts:
         _put_gaussian(lines, lines.root["parts"][part.region][part.part], part)
     return lines.text()
 
 
-def _put_gaussian(lines: _Lines, body: Node, part: PartFit) -> None:
+def _put_gaussian(lines: YamlLines, body: Node, part: PartFit) -> None:
     deviation = np.sqrt(np.diag(part.covariance))
     together = float(part.covariance[0, 1] / (deviation[0] * deviation[1]))
     lines.replace(body["mean"], _pair(part.mean), f"# rated by {part.ratings}")
@@ -126,7 +67,7 @@ def with_weights(path: Path, fit: FaceFit) -> str:
     """The text of weights.yaml with fitted weights. Raises BadInput where too few whole faces were rated."""
     if fit.weights is None:
         raise BadInput("weights", expected="enough rated whole faces", seen="; ".join(fit.lacking))
-    lines = _Lines(read_source(path), path)
+    lines = YamlLines(read_source(path), path)
     table = lines.root["weights"]
     for i, region in enumerate(REGIONS):
         for j, axis in enumerate(("valence", "arousal")):
@@ -134,25 +75,6 @@ def with_weights(path: Path, fit: FaceFit) -> str:
             lines.replace(entry["value"], _number(float(fit.weights[i, j])))
             lines.replace(entry["source"], "fitted")
     return lines.text()
-
-
-def check_text(path: Path, text: str, check: Callable[[Path], object]) -> None:
-    """Raise the BadInput of ``check`` where it cannot read a text that is to be written to ``path``."""
-    if not path.resolve().parent.is_dir() or path.is_dir():
-        raise BadInput(where=Where(path), expected="a file name in a folder that exists", seen="none such")
-    with tempfile.TemporaryDirectory() as folder:
-        trial = Path(folder) / path.name
-        write_text(trial, text)
-        try:
-            check(trial)
-        except BadInput as error:
-            raise BadInput(str(error).replace(str(trial), f"what would be in {path.name}")) from None
-
-
-def write_checked(path: Path, text: str, check: Callable[[Path], object]) -> None:
-    """Write a text that ``check`` can read, or raise its BadInput and leave the file as it was."""
-    check_text(path, text, check)
-    write_text(path, text)
 
 
 def check_parts(path: Path) -> object:

@@ -1,4 +1,4 @@
-"""Fonts and colours of the authoring window: the game's own."""
+"""Fonts and colours of the tools' windows: the game's own."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def set_style() -> None:
     imgui.style_colors_light()
     style = imgui.get_style()
     style.frame_rounding, style.frame_border_size = 5.0, 1.0
-    style.popup_rounding = style.grab_rounding = 5.0
+    style.popup_rounding = style.grab_rounding = style.tab_rounding = 5.0
     style.window_padding = imgui.ImVec2(8.0, 6.0)
     slots = imgui.Col_
     for slot, code in (
@@ -73,6 +73,7 @@ def set_style() -> None:
         (slots.frame_bg_hovered, "FFF1CF"),
         (slots.frame_bg_active, "FFE9BF"),
         (slots.popup_bg, "FFFDF6"),
+        (slots.window_bg, "FFFDF6"),
         (slots.button, "FFFDF6"),
         (slots.button_hovered, "FFE9BF"),
         (slots.button_active, "F7D79A"),
@@ -82,5 +83,17 @@ def set_style() -> None:
         (slots.header, "FFE9BF"),
         (slots.header_hovered, "FFF1CF"),
         (slots.header_active, "F7D79A"),
+        (slots.tab, "EADFC8"),
+        (slots.tab_hovered, "FFE9BF"),
+        (slots.tab_selected, "F7D79A"),
+        (slots.tab_selected_overline, "C23A2D"),
+        (slots.table_header_bg, "EADFC8"),
+        (slots.table_row_bg_alt, "F8F1E2"),
+        (slots.title_bg, "EADFC8"),
+        (slots.title_bg_active, "F7D79A"),
+        (slots.separator, "D9C8B4"),
+        (slots.scrollbar_bg, "FBF4E3"),
+        (slots.scrollbar_grab, "D9C8B4"),
+        (slots.text_selected_bg, "F7D79A"),
     ):
         style.set_color_(slot, _vector(code))

@@ -63,11 +63,18 @@ class ImguiTexture:
         if pixels.shape[2] == 3:
             pixels = np.dstack([pixels, np.full((height, width), 255, np.uint8)])
         self._backend = backend
+        self.size = (width, height)
         self._texture = backend.context.texture((width, height), 4, np.ascontiguousarray(pixels).tobytes())
         self._texture.build_mipmaps()
         self._texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
         backend.register(self._texture)
         self.ref = imgui.ImTextureRef(self._texture.glo)
+
+    def write(self, pixels: NDArray[np.uint8]) -> None:
+        """Another picture of the same size, (h, w, 3) uint8."""
+        filled = np.dstack([pixels, np.full(pixels.shape[:2], 255, np.uint8)])
+        self._texture.write(np.ascontiguousarray(filled).tobytes())
+        self._texture.build_mipmaps()
 
     def release(self) -> None:
         """Give the texture back; it must not be shown any more."""

@@ -1,0 +1,1 @@
+"""What every tool's window shares: ImGui on moderngl, fonts and colours."""
