@@ -24,7 +24,9 @@ Floats = NDArray[np.floating[Any]]
 GUST_S = 11.0
 _COARSE_FROM, _COARSE_M = 120, 0.012  # triangles a thing may have before it is made coarser, with cells of this size
 _LAMPS = ("bulb", "lantern")  # groups whose flat and paper parts glow
-_GLOWING = ("glass", "paper", "flame")
+_GLOWING = ("glass", "paper", "flame", "lantern")
+_DARK = "_rib"  # ends the names of what a lamp holds together with
+_HALO_M = 0.06  # a lantern's halo is no larger than that of so large a lamp
 _BULB = "glass"  # material of bulbs that hang in a still group
 
 
@@ -141,6 +143,12 @@ def _only(part: Part, kept: NDArray[np.bool_]) -> Part:
     return coarser(own, _COARSE_M) if len(own.triangle) > _COARSE_FROM else own
 
 
+def _glows(part: Part) -> bool:
+    name = part.material.name
+    lamp = any(word in part.group for word in _LAMPS) and any(word in name for word in _GLOWING)
+    return lamp and not name.endswith(_DARK)
+
+
 def _joined(rows: Sequence[tuple[Part, Motion, Floats]], bodies: Sequence[tuple[str, bytes]]) -> MovingMesh:
     motion_of: dict[int, tuple[Motion, Floats]] = {}
     lamp = np.zeros((len(bodies), 4))
@@ -150,10 +158,10 @@ def _joined(rows: Sequence[tuple[Part, Motion, Floats]], bodies: Sequence[tuple[
         motion_of[joint] = (motion, pivot)
         count = len(part.position)
         extra = np.zeros((count, 4), np.float32)
-        if any(word in part.group for word in _LAMPS) and any(word in part.material.name for word in _GLOWING):
+        if _glows(part):
             extra[:, 0] = 1.0
             low, high = part.position.min(axis=0), part.position.max(axis=0)
-            lamp[joint] = (*((low + high) / 2.0), 0.5 * float((high - low).max()))
+            lamp[joint] = (*((low + high) / 2.0), min(0.5 * float((high - low).max()), _HALO_M))
         joints = np.zeros((count, 4), np.uint8)
         joints[:, 0] = joint
         weight = np.zeros((count, 4), np.uint8)

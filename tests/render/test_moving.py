@@ -41,6 +41,14 @@ def test_the_markets_bulbs_hang_each_from_its_own_pivot(stall) -> None:
     assert (place[:, 1] <= moving.pivot[joint, 1] + 0.006).all(), "a bulb hangs below its pivot"
 
 
+def test_lanterns_are_lamps_and_flags_are_not() -> None:
+    motion = Motion((0.0, 0.0, 1.0), 0.1, 2.0)
+    parts = [cube("sway:lanterns_1", name="lantern"), cube("sway:lanterns_1", name="lantern_rib"), cube("sway:flags_2")]
+    (moving,) = moving_meshes([(part, motion, np.tile(part.position[2], (8, 1))) for part in parts])
+    assert sorted((moving.lamp[:, 3] > 0).tolist()) == [False, True]
+    assert (moving.mesh.extra[:, 0] > 0).sum() == 8, "the paper glows, its ribs do not"
+
+
 def test_a_sway_turns_about_the_pivot_within_its_amplitude_and_passes_through_rest() -> None:
     (moving,) = moving_meshes(things(3, Motion((0.0, 0.0, 1.0), np.radians(6.0), 2.0)))
     angles = []

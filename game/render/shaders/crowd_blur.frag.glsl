@@ -1,11 +1,12 @@
-// Out of focus like the painted backdrop: few taps, for the picture is small and will be enlarged.
+// Out of focus like the painted backdrop: taps between texels, so that nothing of a texel's size is left.
 in vec2 uv;
 uniform sampler2D picture;
 uniform vec2 texel;
 out vec4 colour;
 void main() {
-    vec2 far = texel * 1.15;
-    colour = 0.28 * texture(picture, uv)
-           + 0.18 * (texture(picture, uv + far) + texture(picture, uv - far)
-                   + texture(picture, uv + vec2(far.x, -far.y)) + texture(picture, uv + vec2(-far.x, far.y)));
+    colour = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec2 way = vec2(i % 2 == 0 ? -1.0 : 1.0, i < 2 ? -1.0 : 1.0) * texel;
+        colour += 0.17 * texture(picture, uv + way * 0.5) + 0.08 * texture(picture, uv + way * 1.5);
+    }
 }
