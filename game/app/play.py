@@ -5,6 +5,7 @@ examples:
   run_game.py play --avatar somebody.vrm
   run_game.py play --language ja --seed 7
   run_game.py play --mode gestures --size 1600x900
+  run_game.py play --watch my_shop                  bodies by my_shop/units.yaml, taken up anew whenever it changes
   run_game.py play --stall flea --at deal_fair --item vase
 
 keys in a talk: 1-4 say a line, O put an offer with it, left/right the amount (shift: larger steps), P the asking
@@ -21,6 +22,7 @@ import os
 import sys
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pygame
@@ -33,6 +35,7 @@ from game.app.pad import Pads
 from game.app.screens import TalkScreen
 from game.app.session import Screen, Session
 from game.app.settings import Settings
+from game.app.units_reload import UnitsWatch, watched_units
 from game.app.window import Window
 from game.app.world import World
 from game.core.errors import BadInput, MissingPart
@@ -53,6 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mode", choices=["full", "gestures", "body", "face"], default="full", help="what is acted")
     parser.add_argument("--at", metavar="NODE", help="start in a talk at this node (designer mode; with --stall)")
     parser.add_argument("--item", help="with --at: the thing talked about (default: the first)")
+    parser.add_argument("--watch", type=Path, metavar="DIR", help="motion units of this folder, again as they change")
     parser.add_argument("--overlay", action="store_true", help="start with feelings and active nodes shown")
 
 
@@ -81,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
         need_display()
         session = open_session(args, avatar)
         screen = _warped(session, args)
+        units = None if args.watch is None else watched_units(args.watch)
         width, height = args.size
         device = Device.window(width, height, session.strings("title"), fullscreen=session.settings.fullscreen)
     except MissingPart as error:
@@ -88,6 +93,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"error: {error}; all the same without a window: run_game.py autoplay | snapshot", file=sys.stderr)
         return 2
     window = Window(session, device, screen=screen)
+    window.inspector.units = None if units is None else UnitsWatch(units)
     try:
         window.draw()
         _set_icon(window)

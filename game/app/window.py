@@ -281,6 +281,8 @@ class Window:
             self.photo.advance(elapsed_s)
             return
         self.inspector.reloader.advance(self.session, elapsed_s)
+        if self.inspector.units is not None:
+            self.inspector.units.advance(self.session, elapsed_s)
         self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
         while self._late_s >= TICK_S:
             self._late_s -= TICK_S

@@ -9,6 +9,7 @@ from game.app.input import Action
 from game.app.reload import Reloader
 from game.app.session import Session
 from game.app.ui import FEELING_COLOURS, PALETTE, Canvas, Rect, fade, hex_colour
+from game.app.units_reload import UnitsWatch
 from game.core.emotion_space import SIX
 
 __all__ = ["Inspector"]
@@ -46,6 +47,7 @@ class Inspector:
     """The panel's state: what is held by the mouse, and the last frame's places. It draws; ``designer`` does."""
 
     reloader: Reloader = field(default_factory=Reloader)
+    units: UnitsWatch | None = None
     open: bool = False
     held: _Slider | None = None
     sliders: list[_Slider] = field(default_factory=list)
@@ -214,3 +216,12 @@ class Inspector:
             wide = canvas.measure(reloader.said, 15) + 32
             canvas.panel(Rect(left, TOP, wide, 34), PALETTE["teal"], radius=14)
             canvas.text(left + 16, TOP + 7, reloader.said, 15, _WHITE)
+        units = self.units
+        if units is not None and units.said:
+            rows = list(canvas.rows(units.said, width - 32, 15))
+            wide = max(canvas.measure(row, 15) for row in rows) + 32
+            back, edge = (_BACK, PALETTE["red"]) if units.broken else (PALETTE["teal"], PALETTE["teal"])
+            panel = Rect(left, TOP + 42, wide, 14 + 21 * len(rows))
+            canvas.panel(panel, back, radius=14, border=2, border_colour=edge)
+            for i, row in enumerate(rows):
+                canvas.text(left + 16, TOP + 49 + 21 * i, row, 15, _WHITE)

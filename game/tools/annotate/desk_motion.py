@@ -15,8 +15,8 @@ from game.app.stage import StageAssets, StageShow, load_stage
 from game.core import quaternion as quat
 from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
 from game.embos.clips import TakeClip
-from game.face import FIELDS
-from game.render import Camera, Device, FrameView, Renderer, level_named
+from game.face import load_face, start_face
+from game.render import Camera, Device, Renderer, level_named
 from game.tools.windows.imgui_backend import ImguiBackend, ImguiTexture
 from game.tools.windows.style import colour
 
@@ -101,6 +101,7 @@ class MotionPictures:
     _stage: StageAssets | None = None
     _renderer: Renderer | None = None
     _puppets: dict[int, _Puppet] = field(default_factory=dict)
+    _face: NDArray[np.float64] | None = None
 
     def draw(
         self, index: int, clip: TakeClip, time_s: float, camera: Camera, size: tuple[int, int], *, stall: bool
@@ -119,7 +120,8 @@ class MotionPictures:
             puppet.show.puppet = None
         puppet.show.tick(pose, max(step_s, 0.0))
         puppet.time_s, puppet.shown = time_s, wanted
-        view = _shown(puppet.show, camera, stall=stall)
+        assert self._face is not None
+        view = replace(puppet.show.frame(self._face, camera=camera), show_stall=stall)
         renderer.draw(view)
         pixels = renderer.read_pixels()
         if puppet.texture is not None and puppet.texture.size == size:
@@ -137,7 +139,7 @@ class MotionPictures:
 
     def _renderer_of(self, size: tuple[int, int]) -> Renderer:
         if self._renderer is None:
-            self._stage = load_stage()
+            self._stage, self._face = load_stage(), start_face(load_face(), 0).params
             device = Device(self.context, size, windowed=False)
             level = level_named("low" if device.software else "high")
             self._renderer = Renderer(device, self._stage.model, self._stage.stall, self._stage.backdrop, level=level)
@@ -152,10 +154,6 @@ class MotionPictures:
         self._puppets.clear()
         if self._renderer is not None:
             self._renderer.release()
-
-
-def _shown(show: StageShow, camera: Camera, *, stall: bool) -> FrameView:
-    return replace(show.frame(np.zeros(len(FIELDS)), camera=camera), show_stall=stall)
 
 
 _LEFT = np.array([name.startswith("left") for name in REFERENCE.names])
