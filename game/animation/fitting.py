@@ -55,6 +55,11 @@ _NEAR, _FAR = 1.45, 2.30
 _OVER_TABLE_M, _ABOVE_TABLE_M = 0.06, 0.36
 """A palm lower over the table than the first belongs to it, higher than the second it does not."""
 _BESIDE_TABLE_M = 0.07
+_LOW_M, _HIGH_M = 0.035, 0.08
+"""A palm lower over the table than the first cannot go where the table is, one higher than the second can."""
+_LOW_BACK_M, _HIGH_BACK_M = (-0.08, -0.01), (-0.03, 0.09)
+"""Before the table's back edge: where the table begins to count for a low palm and where nothing else does, and the
+same for a high one, which a belly that leans over the edge takes along."""
 _TOGETHER_M, _APART_M = 0.14, 0.34
 """Palms nearer than the first keep their distance, further apart than the second each goes its own way."""
 _REACH_SOFT, _REACH_FULL = 0.985, 0.999
@@ -81,10 +86,12 @@ _SUM, _ONES = np.ones(3, dtype=np.float32), np.ones((6, 1), dtype=np.float32)
 _LIMITS = np.array(
     [(_FAR, _NEAR)] * 4
     + [
-        (TABLE_BACK_Z_M - _BESIDE_TABLE_M, TABLE_BACK_Z_M),
+        (TABLE_BACK_Z_M + _LOW_BACK_M[0], TABLE_BACK_Z_M + _LOW_BACK_M[1]),
         (TABLE_FRONT_Z_M + 2.0 * _BESIDE_TABLE_M, TABLE_FRONT_Z_M + _BESIDE_TABLE_M),
         (TABLE_TOP_M + _ABOVE_TABLE_M, TABLE_TOP_M + _OVER_TABLE_M),
         (_APART_M, _TOGETHER_M),
+        (TABLE_BACK_Z_M + _HIGH_BACK_M[0], TABLE_BACK_Z_M + _HIGH_BACK_M[1]),
+        (TABLE_TOP_M + _HIGH_M, TABLE_TOP_M + _LOW_M),
     ]
 )
 _OUTSIDE = _LIMITS[:, :1].astype(np.float32)
@@ -170,16 +177,17 @@ class Fitting:
         local = ((palm[:, None] - here) @ turn - self.centre[0]) / self.radius[0]
         there += (local * self.radius[1] + self.centre[1]) @ turn.swapaxes(-1, -2)
         way = palm[:, 1] - palm[:, 0]
-        nearness = np.empty((n, 8, 2), dtype=np.float32)
+        nearness = np.empty((n, 10, 2), dtype=np.float32)
         nearness[:, :4] = np.sqrt((local[:, :4] * local[:, :4]) @ _SUM)
-        nearness[:, 4] = nearness[:, 5] = palm[..., 2]
-        nearness[:, 6] = palm[..., 1]
+        nearness[:, 4] = nearness[:, 5] = nearness[:, 8] = palm[..., 2]
+        nearness[:, 6] = nearness[:, 9] = palm[..., 1]
         nearness[:, 7] = np.sqrt((way * way) @ _SUM)[:, None]
         # 0 far away, 1 near, smooth between.
         nearness = np.minimum(np.maximum((nearness - _OUTSIDE) * _STEEP, np.float32(0.0)), np.float32(1.0))
         nearness *= nearness * (np.float32(3.0) - np.float32(2.0) * nearness)
         weight = np.zeros((n, 6, 2), dtype=np.float32)
-        weight[:, 5] = nearness[:, 4] * nearness[:, 5] * nearness[:, 6]
+        high, low = nearness[:, 8], nearness[:, 9]
+        weight[:, 5] = (high + low * (nearness[:, 4] - high)) * nearness[:, 5] * nearness[:, 6]
         # The table does not give way, so it comes before the body behind it.
         np.multiply(nearness[:, :4], np.float32(1.0) - weight[:, 5:], out=weight[:, :4])
         # What no contact claims is in the open.
@@ -299,6 +307,8 @@ def _places(where: Mapping[str, Floats], size: BodySize | None, arm: Floats, han
             # At the same share of the way from the hips to the head, whatever joint carries it.
             up = (centre[1] - _REST["hips"][1]) / (_REST["head"] - _REST["hips"])[1]
             place = where["hips"] + up * (where["head"] - where["hips"])
+            if size:
+                place = place + (0.0, 0.0, size.ahead.get(region, 0.0))
             centres.append(place - where[region])
         radii.append(radius * share)
     centre, radius = np.zeros((2, 6, 2, 3)), np.ones((2, 6, 2, 3))

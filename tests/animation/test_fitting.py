@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from game.animation import BodySize, Pose, Rig, fit_to
+from game.animation import BodySize, Pose, Rig, fit_to, measure_body
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
@@ -226,3 +226,55 @@ def test_needed_bones_are_named():
     few = {k: v for k, v in REST.items() if k not in ("leftFoot", "head")}
     with pytest.raises(BadInput, match="no head, leftFoot"):
         fit_to(few)
+
+
+def _drum(front: float, back: float, half: float = 0.126) -> np.ndarray:
+    """(v, 3) a trunk of this width, its front and back so far from the middle, as tall as the reference's."""
+    angle, height = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 60), np.linspace(0.5, 0.9, 60))
+    depth = np.where(np.cos(angle) > 0.0, front, back)
+    return np.stack([half * np.sin(angle), height, depth * np.cos(angle)], axis=-1).reshape(-1, 3)
+
+
+def _measured(points: np.ndarray) -> BodySize:
+    everywhere = np.ones(len(points), dtype=bool)
+    return measure_body(points, ~everywhere, everywhere, REST["hips"], REST["head"])
+
+
+def test_a_belly_that_is_all_in_front_keeps_hands_off_it():
+    """Twice the depth in front and none behind: what lies on it moves as far forward as the belly's front does."""
+    flat, belly = _measured(_drum(0.104, 0.104)), _measured(_drum(0.208, 0.104))
+    assert flat.ahead["spine"] == pytest.approx(0.0, abs=4e-3)
+    assert belly.share["spine"][2] == pytest.approx(1.5, abs=0.02)
+    assert belly.ahead["spine"] == pytest.approx(0.052, abs=4e-3)
+    places = []
+    for size in (flat, belly):
+        fitting = fit_to(REST, size)
+        assert fitting is not None
+        places.append((fitting.centre[1, 1, 0, 2], fitting.radius[1, 1, 0, 2]))
+    (thin, thin_radius), (wide, wide_radius) = places
+    assert wide + wide_radius - thin - thin_radius == pytest.approx(0.104, abs=0.012)
+    assert wide - wide_radius - thin + thin_radius == pytest.approx(0.0, abs=0.012)
+
+
+def test_a_hand_on_the_belly_goes_with_a_belly_that_leans_over_the_table():
+    """Over the top the table lets it: what touches the reference's belly is as near to this one's."""
+    broad = (1.4, 1.0, 1.5)
+    size = BodySize(dict.fromkeys(("chest", "spine", "hips"), broad), {"spine": 0.03, "hips": 0.01})
+    fitting = fit_to(REST, size)
+    assert fitting is not None
+    seen = []
+    for emotion in ("anger", "fear", "disgust"):
+        pose = take(emotion, 5)
+        here, there = joints(rig_at(REST), pose), joints(rig_at(REST, size=size), pose)
+        for side in ("left", "right"):
+            local = [
+                (np.einsum("nji,nj->ni", body["spine"][:, :3, :3], palms(body, side) - body["spine"][:, :3, 3]) - c) / r
+                for body, c, r in zip((here, there), fitting.centre[:, 1, 0], fitting.radius[:, 1, 0], strict=True)
+            ]
+            palm = palms(here, side)
+            apart = np.linalg.norm(palm - palms(here, "right" if side == "left" else "left"), axis=-1) > 0.34
+            on = (np.linalg.norm(local[0], axis=-1) < 1.45) & (palm[:, 1] > TABLE_TOP_M + 0.06) & apart
+            seen.append(np.linalg.norm(local[1][on], axis=-1) - np.linalg.norm(local[0][on], axis=-1))
+    off = np.concatenate(seen)
+    assert len(off) > 15
+    assert off.min() > -0.12
