@@ -14,7 +14,8 @@ from game.app.bazaar import load_bazaar
 from game.app.loading import load_step_assets
 from game.app.market import Market, Stall, StallLoader, read_stall
 from game.app.reading import load_read
-from game.app.saves import load_game
+from game.app.save_reader import read_json
+from game.app.saves import read_game
 from game.app.session import Session
 from game.app.settings import load_settings, user_folder
 from game.app.step import new_world
@@ -82,9 +83,5 @@ def take_up(session: Session) -> None:
 
 def resume_game(session: Session, path: Path) -> None:
     """Take a saved game up. Raises BadInput where it cannot be read; nothing has changed then."""
-    saved = load_game(path, session.market.bazaar, session.market.talks())
-    session.afternoon = saved.afternoon
-    if saved.stall in session.market.stalls:
-        session.go_to(saved.stall)
-    if saved.talk is not None:
-        session.resume_talk(saved.talk, saved.marks)
+    root = read_json(path)
+    session.take_up(read_game(root, session.market.bazaar, session.market.talks()), root.data)

@@ -7,6 +7,7 @@ examples:
   run_game.py play --mode gestures --size 1600x900
   run_game.py play --watch my_shop                  bodies by my_shop/units.yaml, taken up anew whenever it changes
   run_game.py play --stall flea --at deal_fair --item vase
+  run_game.py play --record talk.jsonl               for run_game.py replay talk.jsonl
 
 keys in a talk: 1-4 say a line, O put an offer with it, left/right the amount (shift: larger steps), P the asking
 price, B only the offer, W wait, G go; space or a click goes on; F1 feelings, F2 active nodes, F3 networks, F8 frame
@@ -32,9 +33,10 @@ from game.app.designer import warp_session
 from game.app.input import action_of
 from game.app.opening import open_session
 from game.app.pad import Pads
+from game.app.recording import LAST_SESSION, Recorder, record_session
 from game.app.screens import TalkScreen
 from game.app.session import Screen, Session
-from game.app.settings import Settings
+from game.app.settings import Settings, user_folder
 from game.app.units_reload import UnitsWatch, watched_units
 from game.app.window import Window
 from game.app.world import World
@@ -58,6 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--item", help="with --at: the thing talked about (default: the first)")
     parser.add_argument("--watch", type=Path, metavar="DIR", help="motion units of this folder, again as they change")
     parser.add_argument("--overlay", action="store_true", help="start with feelings and active nodes shown")
+    parser.add_argument("--record", type=Path, metavar="FILE", help="record the play (the last one is always kept)")
 
 
 def _choose_level(window: Window, settings: Settings) -> None:
@@ -84,6 +87,7 @@ def run(args: argparse.Namespace) -> int:
         avatar = avatar_of(args)
         need_display()
         session = open_session(args, avatar)
+        recorder = _recorder(session, args)
         screen = _warped(session, args)
         units = None if args.watch is None else watched_units(args.watch)
         width, height = args.size
@@ -104,10 +108,30 @@ def run(args: argparse.Namespace) -> int:
         _choose_level(window, session.settings)
         _loop(window)
     finally:
+        if recorder is not None:
+            recorder.close(session)
         window.close()
         device.release()
         pygame.display.quit()
+    if args.record is not None and recorder is not None and recorder.trouble:
+        raise BadInput(recorder.trouble)
     return 0
+
+
+def _recorder(session: Session, args: argparse.Namespace) -> Recorder | None:
+    """Every play is recorded, the last one kept; without ``--record`` a folder that cannot be written is no matter."""
+    designed = [name for name in ("at", "watch") if getattr(args, name) is not None]
+    if designed:
+        if args.record is not None:
+            expected = "a play without --at and --watch: what a designer does is not replayed"
+            raise BadInput("--record", expected=expected, seen=f"--{designed[0]}")
+        return None
+    try:
+        return record_session(session, args.record or user_folder() / LAST_SESSION, stall=args.stall)
+    except BadInput:
+        if args.record is not None:
+            raise
+        return None
 
 
 def _warped(session: Session, args: argparse.Namespace) -> Screen | None:

@@ -28,7 +28,7 @@ from game.story import Beat, Memory, restore, resume
 from game.story import save as save_story
 from game.story.vocabulary import Value
 
-__all__ = ["SAVE_VERSION", "SavedGame", "load_game", "retrace", "save_game"]
+__all__ = ["SAVE_VERSION", "SavedGame", "game_to_dict", "load_game", "read_game", "retrace", "save_game"]
 
 SAVE_VERSION = 2
 
@@ -47,9 +47,9 @@ def _plain(value: Any) -> dict[str, Any]:
     return {field.name: getattr(value, field.name) for field in fields(value)}
 
 
-def save_game(path: Path, game: SavedGame) -> None:
-    """Write the game to ``path``, atomically. Raises BadInput where the folder cannot be written."""
-    data: dict[str, Any] = {
+def game_to_dict(game: SavedGame) -> dict[str, Any]:
+    """The game as plain JSON, what ``read_game`` takes."""
+    return {
         "version": SAVE_VERSION,
         "afternoon": _afternoon_to_dict(game.afternoon),
         "stall": game.stall,
@@ -60,7 +60,11 @@ def save_game(path: Path, game: SavedGame) -> None:
             if m.choice is not None
         ],
     }
-    text = json.dumps(data, ensure_ascii=False, indent=1)
+
+
+def save_game(path: Path, game: SavedGame) -> None:
+    """Write the game to ``path``, atomically. Raises BadInput where the folder cannot be written."""
+    text = json.dumps(game_to_dict(game), ensure_ascii=False, indent=1)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
@@ -84,7 +88,11 @@ def load_game(path: Path, bazaar: Bazaar, talks: Mapping[str, TalkAssets]) -> Sa
 
     talks: what the talks of the open stalls need. A talk at a stall that does not open today is not taken up.
     """
-    root = read_json(path)
+    return read_game(read_json(path), bazaar, talks)
+
+
+def read_game(root: SaveReader, bazaar: Bazaar, talks: Mapping[str, TalkAssets]) -> SavedGame:
+    """A game from a save's JSON; the rest as for ``load_game``."""
     version = root.at("version").whole()
     if version not in (1, SAVE_VERSION):
         raise root.at("version").fail(f"version {SAVE_VERSION}", version)

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from game.app.afternoon import Afternoon, Reading, finish_talk, lesson_of, next_day, open_day, talk_minutes, visit_stall
+from game.app.afternoon import (
+    Afternoon,
+    Reading,
+    finish_talk,
+    lesson_of,
+    next_day,
+    open_day,
+    pass_time,
+    talk_minutes,
+    visit_stall,
+    walk_to,
+)
 from game.app.input import COMMANDS, Action, command_of
+from game.app.journal import Journal
 from game.app.market import Market, StallLoader
 from game.app.reading import ReadLines
+from game.app.saves import SavedGame
 from game.app.settings import Settings, save_settings
-from game.app.step import StepAssets, new_world
+from game.app.step import StepAssets, new_world, step
 from game.app.strings import Strings
 from game.app.talk import TalkState
 from game.app.tells import TellWatch
@@ -21,7 +36,7 @@ from game.app.ui import Canvas
 from game.app.world import Intent, Mark, World, enter_talk, leave_talk
 from game.face import FaceParams
 
-__all__ = ["MenuScreen", "Screen", "Session", "change_setting", "keep_keys", "take_back"]
+__all__ = ["MenuScreen", "Screen", "Session", "change_setting", "keep_keys", "saved_game", "take_back"]
 
 
 @dataclass
@@ -32,7 +47,8 @@ class Session:
     taken_up: whether the game saved last has been looked for. designed: a designer has had a hand in it (a script
     reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more. pointed: the item on the table
     under the pointer. watch: sees what the body tells in the talk under way. read:
-    lines that have been read before.
+    lines that have been read before. journal: who follows what is done; ticks: done since the session began, at
+    whatever stall.
     """
 
     assets: StepAssets
@@ -50,6 +66,9 @@ class Session:
     designed: bool = False
     read: ReadLines = field(default_factory=ReadLines)
     watch: TellWatch = field(default_factory=TellWatch)
+    journal: Journal | None = None
+    ticks: int = 0
+    _told: int = 0
 
     @property
     def stall(self) -> str:
@@ -73,6 +92,49 @@ class Session:
         """An amount as the stall's currency writes it in the present language."""
         return self.assets.talk.script.currency.text(amount).get(self.strings.language)
 
+    def tick(self, intent: Intent) -> None:
+        """One fixed step of the world."""
+        if self.journal is not None:
+            intent = self.journal.before(self, intent)
+        self.world = step(self.assets, self.world, intent)
+        self.ticks += 1
+        if self.journal is not None:
+            self.journal.after(self)
+
+    @contextmanager
+    def told(self, what: str, **values: Any) -> Iterator[None]:
+        """Tell the journal of a change that is not a tick; every such change is made inside."""
+        if self.journal is not None and self._told == 0:
+            self.journal.begin(self)
+        self._told += 1
+        try:
+            yield
+        finally:
+            self._told -= 1
+        if self.journal is not None and self._told == 0:
+            self.journal.end(self, what, values)
+
+    def walk_to(self, stall: str) -> None:
+        """Walk along the street to a stall, and stand at its table."""
+        with self.told("walk", stall=stall):
+            self.afternoon = walk_to(self.market.bazaar, self.afternoon, stall)
+            self.go_to(stall)
+
+    def pause(self) -> None:
+        """Sit down for a while."""
+        with self.told("pause"):
+            bazaar = self.market.bazaar
+            self.afternoon = pass_time(bazaar, self.afternoon, bazaar.costs.pause)
+
+    def take_up(self, game: SavedGame, data: Any) -> None:
+        """Go on with a saved game. data: its JSON, what it was read from."""
+        with self.told("resume", save=data):
+            self.afternoon = game.afternoon
+            if game.stall in self.market.stalls:
+                self.go_to(game.stall)
+            if game.talk is not None:
+                self.resume_talk(game.talk, game.marks)
+
     def go_to(self, stall: str) -> None:
         """Stand at a stall's table: its person, calm, and its goods."""
         if stall != self.stall:
@@ -89,11 +151,12 @@ class Session:
 
     def begin_talk(self, item: str) -> None:
         """Ask about a thing on this table."""
-        self.bend()
-        talk = visit_stall(self.assets.talk, self.afternoon, item)
-        self.world, self.watch = enter_talk(self.assets, self.world, talk), TellWatch()
-        if lesson_of(self.market.bazaar, self.afternoon).greeting_habit:
-            self.world = replace(self.world, habit=self.assets.talk.person.habit_label)
+        with self.told("talk", item=item):
+            self.bend()
+            talk = visit_stall(self.assets.talk, self.afternoon, item)
+            self.world, self.watch = enter_talk(self.assets, self.world, talk), TellWatch()
+            if lesson_of(self.market.bazaar, self.afternoon).greeting_habit:
+                self.world = replace(self.world, habit=self.assets.talk.person.habit_label)
 
     def resume_talk(self, talk: TalkState, marks: tuple[Mark, ...]) -> None:
         """Go on with a talk as it stood, its curve with it."""
@@ -104,6 +167,10 @@ class Session:
         """A new afternoon: the next day of this one, or a first one."""
         if self.loader is not None:
             self.loader.wait_for_scripts()
+        with self.told("day", again=again):
+            self._open_day(again)
+
+    def _open_day(self, again: bool) -> None:
         bazaar, scripts, before = self.market.bazaar, self.market.scripts, self.afternoon
         first = self.market.order[0]
         if again:
@@ -120,6 +187,10 @@ class Session:
 
     def end_talk(self) -> None:
         """Book the talk that has ended and step back from the table."""
+        with self.told("book"):
+            self._end_talk()
+
+    def _end_talk(self) -> None:
         talk, marks = self.world.talk, self.world.marks
         assert talk is not None
         if self.designed:
@@ -171,11 +242,20 @@ def take_back(session: Session) -> bool:
     while backlog and backlog[-1].id in gone:
         backlog = backlog[:-1]
     kept = world.marks[:-1]
-    entered = enter_talk(session.assets, world, before)
-    session.world = replace(entered, queue=(), backlog=backlog, marks=kept, waited=0)
-    session.watch.tells = [tell for tell in session.watch.tells if tell.round < len(kept)]
-    session.afternoon = replace(session.afternoon, taken_back=session.afternoon.taken_back + 1)
+    with session.told("back"):
+        entered = enter_talk(session.assets, world, before)
+        session.world = replace(entered, queue=(), backlog=backlog, marks=kept, waited=0)
+        session.watch.tells = [tell for tell in session.watch.tells if tell.round < len(kept)]
+        session.afternoon = replace(session.afternoon, taken_back=session.afternoon.taken_back + 1)
     return True
+
+
+def saved_game(session: Session) -> SavedGame:
+    """What a save holds of the running game; a talk that has ended is booked, not saved."""
+    world = session.world
+    if world.talk is None or world.talk.ended:
+        return SavedGame(session.afternoon, session.stall)
+    return SavedGame(session.afternoon, session.stall, world.talk, world.marks)
 
 
 class Screen(Protocol):

@@ -17,13 +17,12 @@ from game.app.photo import PhotoMode, fine_factor, photo_folder, photo_path, sma
 from game.app.picking import Picker
 from game.app.pictures import write_png
 from game.app.reading import save_read
-from game.app.saves import SavedGame, save_game
+from game.app.saves import save_game
 from game.app.screens import InspectScreen, OutcomeScreen, SlotsScreen, TableScreen, TalkScreen, TitleScreen
-from game.app.session import Screen, Session
+from game.app.session import Screen, Session, saved_game
 from game.app.settings import TIMERS, user_folder
 from game.app.slots import QUICK, keep
 from game.app.stage import StageAssets, StageShow
-from game.app.step import step
 from game.app.tells import Tell
 from game.app.ui import Canvas
 from game.app.world import TICK_S, Intent
@@ -257,7 +256,7 @@ class Window:
         wanted = TIMERS[session.settings.timers]
         if session.world.timers != wanted:
             session.world = replace(session.world, timers=wanted)
-        session.world = step(session.assets, session.world, intent)
+        session.tick(intent)
         assert session.world.body.pose is not None
         self.show.tick(session.world.body.pose, TICK_S, session.world.body)
         if self.crowd is not None and self.renderer.level.people:
@@ -271,6 +270,8 @@ class Window:
 
     def _direct(self) -> None:
         session, screen = self.session, self.screen
+        if session.journal is not None:
+            session.journal.shows(session, screen.scene)
         offering = isinstance(screen, TalkScreen) and screen.offering
         moment = moment_of(session.world, screen.scene, place=session.stall, offering=offering)
         self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
@@ -371,14 +372,6 @@ class Window:
         self.inspector.draw(self.session, canvas)
         if self.renderer.times.on:
             draw_timings(self.renderer, self.frames_ms, canvas)
-
-
-def saved_game(session: Session) -> SavedGame:
-    """What a save holds of the running game; a talk that has ended is booked, not saved."""
-    world = session.world
-    if world.talk is None or world.talk.ended:
-        return SavedGame(session.afternoon, session.stall)
-    return SavedGame(session.afternoon, session.stall, world.talk, world.marks)
 
 
 def _speakable(session: Session) -> str:

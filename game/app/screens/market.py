@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from game.app.afternoon import is_closed, pass_time, walk_to
+from game.app.afternoon import is_closed
 from game.app.input import Action
 from game.app.screens.street import draw_sky, draw_stall, draw_top
 from game.app.session import MenuScreen, Screen, Session
@@ -34,16 +34,14 @@ class MarketScreen(MenuScreen):
 
             return WishListScreen(self)
         if pressed == "pause":
-            bazaar = session.market.bazaar
-            session.afternoon = pass_time(bazaar, session.afternoon, bazaar.costs.pause)
+            session.pause()
         elif pressed == "go_home":
             from game.app.screens.epilogue import EpilogueScreen
 
             return EpilogueScreen()
         elif pressed in session.market.stalls:
             place = next(b.rect for b in self._buttons.buttons if b.id == pressed)
-            session.afternoon = walk_to(session.market.bazaar, session.afternoon, pressed)
-            session.go_to(pressed)
+            session.walk_to(pressed)
             return WalkScreen(pressed, place)
         return None
 
