@@ -22,7 +22,8 @@ class PlannerConfig:
     waiting; steady: φ_time of a unit that neither runs nor waits. least_s: layer -> seconds a started unit keeps
     going. spread: scales the takes' spread in the random factors. look_s: seconds between two looks at times and
     emotion, 0: every tick. settled: layers whose units are taken to have run before the first tick, so that not all
-    are free at once. rest: layer -> φ_state of its rest unit. presence: 0..1, see scores.presence.
+    are free at once; eager: 0..1, share of that wait that is left when the emotion leaps. rest: layer -> φ_state of
+    its rest unit. presence: 0..1, see scores.presence.
     tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a
     word's moment stays open. lead_in_s: most seconds a line waits for the preparation of its first gesture. stress:
     which words beats may fall on.
@@ -40,6 +41,7 @@ class PlannerConfig:
     spread: float = 1.0
     look_s: float = 0.0
     settled: tuple[str, ...] = ("mannerism",)
+    eager: float = 0.3
     rest: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(LAYERS_WITH_REST, 0.02))
     presence: float = 1.0
     tolerance: float = 0.02
@@ -60,6 +62,7 @@ class PlannerConfig:
             ("steady", 0.0, 1.0),
             ("spread", 0.0, 10.0),
             ("look_s", 0.0, 1.0),
+            ("eager", 0.0, 1.0),
             ("presence", 0.0, 1.0),
             ("tolerance", 0.0, 1.0),
             ("radius", 1e-3, 100.0),
@@ -89,6 +92,7 @@ def load_config(path: Path) -> PlannerConfig:
                 "spread": "spread",
                 "look_s": "look_s",
                 "settled": "settled",
+                "eager": "eager",
             },
         ),
         ("state", {"rest": "rest", "presence": "presence", "tolerance": "tolerance"}),

@@ -29,6 +29,10 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 
+LEAP = 0.35
+"""A change of any of the seven emotions beyond this is one that strikes."""
+
+
 class Planner:
     """Chooses units from a library by eq. 1. Immutable; all that changes is in the state."""
 
@@ -52,8 +56,10 @@ class Planner:
             running=running,
             marks_s=np.full((n, layers, 2), -np.inf),
             wait_s=np.full((n, t.slots), -np.inf),
+            untried=np.ones((n, t.slots), dtype=bool),
             starts=np.zeros((n, layers), dtype=np.int64),
             emotion=np.full((n, 7), -9.0),
+            settled=np.full((n, 7), -9.0),
             phi_state=np.zeros((n, t.slots)),
             words=np.zeros((n, t.gestures.stop - t.gestures.start)),
             next_s=np.full(n, -np.inf),
@@ -138,18 +144,30 @@ class Planner:
         return state.renewed(emotion=felt, phi_state=phi)
 
     def _settle(self, state: PlannerState, fresh: Bools, time_s: float) -> PlannerState:
-        """Some way through its waiting time, for each unit of the settled layers of characters about to begin."""
-        t, slots, rows = self.tables, self.tables.settled, fresh.nonzero()[0]
+        """Some way through its waiting time, for each unit of the settled layers of characters about to begin.
+
+        Where the emotion has leapt since, units that have not run yet come sooner: a feeling that strikes shows.
+        """
+        t, slots = self.tables, self.tables.settled
+        leapt = np.abs(state.emotion - state.settled).max(axis=1) > LEAP
+        rows = (fresh | leapt).nonzero()[0]
         if slots.size == 0 or rows.size == 0:
             return state
         weights = mix_weights(state.emotion[rows, None], t.intensity[slots], t.exists[slots], self.config.radius)
         period_s = mix(t.timing_s[slots, 0] + t.timing_s[slots, 1], weights)
         who, which = np.indices((len(rows), len(slots))).reshape(2, -1)
-        before = np.full(who.size, -1, dtype=np.int64)  # an event of its own, before the first start
-        chance = uniform(state.key[rows[who]], slots[which], before, 1)
-        wait_s = state.wait_s.copy()
-        wait_s[np.ix_(rows, slots)] = time_s + chance.reshape(period_s.shape) * period_s
-        return state.renewed(wait_s=wait_s)
+        first = fresh[rows]
+        # Events of their own, before the first start.
+        event = np.where(first, -1, -2).astype(np.int64)[who]
+        chance = uniform(state.key[rows[who]], slots[which], event, 1).reshape(period_s.shape)
+        at = np.ix_(rows, slots)
+        drawn_s = time_s + chance * period_s * np.where(first, 1.0, self.config.eager)[:, None]
+        old_s = state.wait_s[at]
+        sooner = state.untried[at] & (first[:, None] | (drawn_s < old_s))
+        wait_s, settled = state.wait_s.copy(), state.settled.copy()
+        wait_s[at] = np.where(sooner, drawn_s, old_s)
+        settled[rows] = state.emotion[rows]
+        return state.renewed(wait_s=wait_s, settled=settled)
 
     def evaluate(self, state: PlannerState, rows: Ints, words: Floats, now: float) -> Factors:
         """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
@@ -250,6 +268,8 @@ class Planner:
         t, old = self.tables, state.decisions
         running, marks_s, wait_s = state.running.copy(), state.marks_s.copy(), state.wait_s.copy()
         starts, numbers, unit = state.starts.copy(), old.numbers.copy(), old.unit.copy()
+        untried = state.untried.copy()
+        untried[who, slot] = False
         soon = np.full(len(who), np.inf)
         # A unit cut short has had its duration: its waiting time begins now.
         ended_s = marks_s[who, layer, 0]
@@ -273,7 +293,9 @@ class Planner:
         numbers[who, layer] = np.concatenate([head, weights], axis=1)
         soon = np.minimum(soon, np.where(new_marks >= now, new_marks, np.inf).min(axis=1))
         decisions = Decisions(unit, flags, numbers)
-        state = state.renewed(running=running, marks_s=marks_s, wait_s=wait_s, starts=starts, decisions=decisions)
+        state = state.renewed(
+            running=running, marks_s=marks_s, wait_s=wait_s, untried=untried, starts=starts, decisions=decisions
+        )
         return state, soon
 
 

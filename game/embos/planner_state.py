@@ -69,17 +69,20 @@ class PlannerState:
 
     key: (n,) uint64 of each character's draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running
     unit's duration, and until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf
-    if it never ran. starts: (n, L) how often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P)
-    as last computed. words: (n, G) of the last tick. next_s: (n,) when the decision may change by time alone,
-    soonest_s the least of them. decisions: the last tick's.
+    if it never ran; untried: (n, P) bool, True where that wait was drawn rather than earned. starts: (n, L) how
+    often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P) as last computed; settled: (n, 7) the
+    emotion that waits were last drawn for. words: (n, G) of the last tick. next_s: (n,) when the decision may
+    change by time alone, soonest_s the least of them. decisions: the last tick's.
     """
 
     key: NDArray[np.uint64]
     running: Ints
     marks_s: Floats
     wait_s: Floats
+    untried: Bools
     starts: NDArray[np.int64]
     emotion: Floats
+    settled: Floats
     phi_state: Floats
     words: Floats
     next_s: Floats

@@ -30,6 +30,9 @@ _HORIZON = 1.0 - 262.0 / 720.0  # height of the painted horizon in the backdrop,
 _TABLE = np.array([[x, 0.594, z] for x in (-0.75, 1.0) for z in (0.16, 0.755)], dtype=np.float32)
 _FLOOR = np.array([[x, 0.0, z] for x in (-3.0, 3.0) for z in (-3.0, 3.0)], dtype=np.float32)
 
+WIDE = 1.45
+"""Width to height from which on the near layer's corners lie outside what is told."""
+
 
 @dataclass(frozen=True)
 class BakeKey:
@@ -154,7 +157,9 @@ class SceneDrawing(Owner):
         self._draw_backdrop(key, 1.0)
         self._shade(runs, sun_share=1.0)
         self._draw_hulls(runs)
-        if any(run.group == "table" for run in runs):  # a stall, not an item in the hand
+        # Before a stall, not an item in the hand; in a narrow picture it would stand before the hands.
+        wide = key.size[0] >= WIDE * key.size[1]
+        if wide and any(run.group == "table" for run in runs):
             self._foreground.draw(key.camera)
         targets.resolve(raw)
         self._make_bloom(targets)
