@@ -6,6 +6,7 @@ examples:
   run_game.py autoplay --policy random:0.5,reader:0.5 --episodes 400 --json
   run_game.py autoplay --policy my_policy.py --episodes 200      an own policy, see docs/autoplay.md
   run_game.py autoplay --episodes 1000000 --out log.jsonl.gz --workers auto --resume
+  run_game.py autoplay --stall toys --visits 4 --episodes 300    come back three times each afternoon
   run_game.py autoplay --dask tcp://scheduler:8786 --episodes 100000
   run_game.py autoplay --stall all --policy all --require coverage.yaml --junit autoplay.xml
   run_game.py autoplay --search fixed --stall flea --candidates 200
@@ -34,6 +35,8 @@ from game.story import shipped_stalls
 
 __all__ = ["add_arguments", "run"]
 
+MOST_VISITS = 20
+"""As far as scripts count them."""
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells have it."""
 
@@ -41,6 +44,7 @@ INTERRUPTED = 130
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``autoplay``."""
     parser.add_argument("--episodes", type=int, default=100, help="talks per policy and stall (default 100)")
+    parser.add_argument("--visits", type=int, default=1, help="talks of an episode: come back so often (default 1)")
     parser.add_argument(
         "--policy", action="append", metavar="WHO", help="who plays (default random); again for more, or all"
     )
@@ -90,6 +94,10 @@ def run(args: argparse.Namespace) -> int:
     """Play, log, summarise, report, judge."""
     if args.episodes < 1:
         raise BadInput("--episodes", expected="at least 1", seen=args.episodes)
+    if not 1 <= args.visits <= MOST_VISITS:
+        raise BadInput("--visits", expected=f"1 to {MOST_VISITS}", seen=args.visits)
+    if args.search and args.visits > 1:
+        raise BadInput("--search", expected="first visits alone, without --visits", seen=args.visits)
     if args.resume and args.out is None:
         raise BadInput("--resume", expected="--out with the log to go on with", seen="none")
     stalls = _stalls(args.stall or ["flea"])
@@ -103,10 +111,10 @@ def run(args: argparse.Namespace) -> int:
     judged = any(x is not None for x in (args.report, args.plots, args.junit, args.require))
     plan = Plan(
         stalls, _populations(args.policy or ["random"]), args.episodes, args.seed, args.body, args.mode,
-        "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged,
+        "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged, visits=args.visits,
     )  # fmt: skip
     if requirements is not None:
-        check_played(requirements, plan.populations)
+        check_played(requirements, plan.populations, plan.visits)
     crew = Crew(workers_of(args.workers), args.dask)
     bar = partial(Progress, show=True if args.progress else None)
     done = play(plan, crew, out=args.out, resume=args.resume, progress=bar)
@@ -147,6 +155,9 @@ def summaries(done: Run) -> list[dict[str, Any]]:
             if not total.talks:
                 continue
             row = {"policy": population, "stall": stall, "seed": done.plan.seed} | total.summary()
+            later = done.total(stall, population, later=True)
+            if later.talks:
+                row["later_visits"] = later.summary()
             own = done.policies(stall, population)
             if len(own) > 1:
                 row["policies"] = {who: tally.summary() for who, tally in own.items()}
@@ -180,6 +191,10 @@ def _tell_one(row: dict[str, Any]) -> None:
     print(f"  deals         {row['deal_rate']:.1%} ± {row['deal_rate_ci95']:.1%}")
     print(f"  mean surplus  {row['mean_surplus']:.3f} ± {row['mean_surplus_ci95']:.3f} of the possible gain")
     print(f"  moves         {row['mean_rounds']:.2f} ± {row['mean_rounds_ci95']:.2f} a talk")
+    if "later_visits" in row:
+        later = row["later_visits"]
+        told = f"deals {later['deal_rate']:.1%}, mean surplus {later['mean_surplus']:.3f}"
+        print(f"  later visits  {told} in {later['episodes']}")
     for ending, count in row["endings"].items():
         print(f"  {ending:<14}{count}")
     for who, own in row.get("policies", {}).items():

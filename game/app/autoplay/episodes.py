@@ -11,7 +11,7 @@ from game.app.policies import Player, Seat, Sign
 from game.app.talk import Choice, TalkState, choose, start_talk
 from game.core.errors import BadInput
 
-__all__ = ["MAX_MOVES", "Decision", "Talk", "play_episode", "play_with_bodies", "sit_down"]
+__all__ = ["MAX_MOVES", "Decision", "Talk", "play_bodies", "play_episode", "play_with_bodies", "sit_down"]
 
 MAX_MOVES = 64
 """A talk is over long before this many moves; one that is not is a fault worth stopping for."""
@@ -78,7 +78,11 @@ def play_episode(seat: Seat, seed: int, episode: int) -> Iterator[Decision]:
 def play_with_bodies(observer: BodyObserver, seats: Sequence[Seat], seed: int, first: int) -> list[list[Decision]]:
     """Episodes from ``first`` on, one for each seat, their bodies side by side: every player sees the body of its own
     talk from the greeting to the moment of its choice."""
-    talks = [sit_down(seat, seed, first + at) for at, seat in enumerate(seats)]
+    return play_bodies(observer, [sit_down(seat, seed, first + at) for at, seat in enumerate(seats)], seed, first)
+
+
+def play_bodies(observer: BodyObserver, talks: Sequence[Talk], seed: int, first: int) -> list[list[Decision]]:
+    """Talks before their first move, all at the same stall, to their ends; seed, first: of their bodies."""
 
     def beat(row: int, seen: list[Watched]) -> TalkState | None:
         talk = talks[row]
@@ -89,8 +93,7 @@ def play_with_bodies(observer: BodyObserver, seats: Sequence[Seat], seed: int, f
             talk.decide(eyes.signs(seen[-1].units), eyes.signs(seen[-1].quiet), seen[-1])
         return talk.state
 
-    assets = seats[0].assets
-    watched = observer.play(assets, len(talks), beat, seed, first)
+    watched = observer.play(talks[0].seat.assets, len(talks), beat, seed, first)
     return [
         [
             Decision(decision.before, decision.after, decision.choice, decision.seen, shown)

@@ -12,16 +12,19 @@ from typing import Any
 
 from game.animation import Mode
 from game.app.autoplay.episodes import Decision, play_episode, play_with_bodies
+from game.app.autoplay.outings import Street, hears_news, play_outing, play_outings_with_bodies
 from game.app.autoplay.rows import log_lines
 from game.app.autoplay.tally import Coverage, Tally
 from game.app.autoplay.tracing import ConditionTrace
 from game.app.autoplay.visits import habits_of
+from game.app.bazaar import load_bazaar
 from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import Seat, mixture_of, seat
 from game.app.talk import TalkAssets
 from game.core.errors import BadInput
 from game.emotion import shown_values
+from game.story import shipped_stalls
 
 __all__ = ["BODIES_PER_JOB", "TALKS_PER_JOB", "Job", "Result", "needs_bodies", "work"]
 
@@ -34,7 +37,8 @@ BODIES_PER_JOB = 256
 class Job:
     """Everything a worker has to know. stall: name or path; population: a mixture of policies as text.
 
-    log: whether rows are wanted, ``plain`` or ``gzip``; cover: whether every condition is listened to.
+    log: whether rows are wanted, ``plain`` or ``gzip``; cover: whether every condition is listened to. visits: talks of
+    an episode.
     """
 
     number: int
@@ -47,14 +51,24 @@ class Job:
     mode: Mode = "full"
     log: str = ""
     cover: bool = False
+    visits: int = 1
+
+    @property
+    def talks(self) -> int:
+        """All of them."""
+        return self.count * self.visits
 
 
 @dataclass
 class Result:
-    """What a job gives back: by policy what was counted, what was covered, and the rows of the log."""
+    """What a job gives back: by policy what was counted, what was covered, and the rows of the log.
+
+    tallies: of first visits; returns: of later ones.
+    """
 
     number: int
     tallies: dict[str, Tally] = field(default_factory=dict)
+    returns: dict[str, Tally] = field(default_factory=dict)
     coverage: Coverage = field(default_factory=Coverage)
     rows: bytes = b""
 
@@ -106,7 +120,34 @@ def _players(job: Job) -> list[Seat]:
     return [_seat(job.stall, name, job.cover, job.bodies, get_ident()) for name in names]
 
 
+@lru_cache(maxsize=8)
+def _street(stall: str, thread: int) -> Street:
+    """The market; who walks it between visits talks to the others as chance has it."""
+    bazaar, script = load_bazaar(), _assets(stall, False, thread)[0].script
+    if script.stall not in bazaar.stalls or not hears_news(script):
+        return Street(bazaar)
+    known = {path.stem for path in shipped_stalls()} - {script.stall}
+    return Street(bazaar, tuple(_seat(name, "random", False, False, thread) for name in bazaar.stalls if name in known))
+
+
+def _episodes(job: Job, players: list[Seat]) -> Iterator[list[list[Decision]]]:
+    """By episode, the talks of its visits."""
+    if job.visits == 1:
+        yield from ([talk] for talk in _talks(job, players))
+        return
+    street = _street(job.stall, get_ident())
+    if job.bodies:
+        observer = _observer(job.mode, bool(job.log), get_ident())
+        for first in range(0, job.count, BODIES_PER_JOB):
+            seats = players[first : first + BODIES_PER_JOB]
+            yield from play_outings_with_bodies(observer, seats, street, job.seed, job.first + first, job.visits)
+    else:
+        for at, player in enumerate(players):
+            yield play_outing(player, street, job.seed, job.first + at, job.visits)
+
+
 def _talks(job: Job, players: list[Seat]) -> Iterator[list[Decision]]:
+    """Single visits."""
     if job.bodies:
         observer = _observer(job.mode, bool(job.log), get_ident())
         for first in range(0, job.count, BODIES_PER_JOB):
@@ -124,18 +165,18 @@ def work(job: Job) -> Result:
     if trace is not None:
         trace.take()
     players = _players(job)
-    for at, (player, decisions) in enumerate(zip(players, _talks(job, players), strict=True)):
-        if not decisions:
-            raise BadInput(
-                f"episode {job.first + at}", expected="at least one decision", seen="a talk that ends at once"
-            )
-        result.tallies.setdefault(player.name, Tally()).add(decisions)
-        result.coverage.add(decisions)
-        if job.bodies:
-            _cover_faces(player, decisions, result.coverage)
-        if job.log:
-            mode = job.mode if job.bodies else None
-            rows.append(log_lines(player.assets.script.stall, player.name, job.first + at, decisions, mode))
+    for episode, (player, talks) in enumerate(zip(players, _episodes(job, players), strict=True), job.first):
+        for visit, decisions in enumerate(talks, 1):
+            if not decisions:
+                raise BadInput(f"episode {episode}", expected="at least one decision", seen="a talk that ends at once")
+            tallies = result.tallies if visit == 1 else result.returns
+            tallies.setdefault(player.name, Tally()).add(decisions)
+            result.coverage.add(decisions)
+            if job.bodies:
+                _cover_faces(player, decisions, result.coverage)
+            if job.log:
+                mode, number = job.mode if job.bodies else None, visit if job.visits > 1 else 0
+                rows.append(log_lines(player.assets.script.stall, player.name, episode, decisions, mode, number))
     if trace is not None:
         result.coverage.conditions = trace.take()
     data = "".join(rows).encode()

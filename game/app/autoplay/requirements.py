@@ -2,6 +2,7 @@
 
 ::
 
+    visits: 4                 # what follows is meant for runs of at least so many visits an episode (default 1)
     coverage:                 # shares of what each stall has, 0 to 1
       nodes: 1
       conditions: 0.9         # both outcomes of each
@@ -59,23 +60,28 @@ class Requirement:
 
 @dataclass(frozen=True)
 class Requirements:
-    """coverage: by kind the least share, and where that stands."""
+    """coverage: by kind the least share, and where that stands. visits: an episode has at least, and where."""
 
     coverage: Mapping[str, tuple[float, str]]
     balance: tuple[Requirement, ...]
+    visits: tuple[int, str] = (1, "")
 
 
 def load_requirements(path: Path) -> Requirements:
     """Read thresholds. Raises BadInput with file:line:col."""
     if not path.is_file():
         raise BadInput("--require", expected="a file that exists", seen=str(path))
-    root = load_yaml(path).only("coverage", "balance")
-    coverage, balance = root.get("coverage"), root.get("balance")
+    root = load_yaml(path).only("visits", "coverage", "balance")
+    visits, coverage, balance = root.get("visits"), root.get("coverage"), root.get("balance")
     shares = {}
     if coverage is not None:
         for key, value in coverage.only(*KINDS).items():
             shares[key.as_str()] = (value.as_float(0.0, 1.0), str(value.where))
-    return Requirements(shares, () if balance is None else tuple(_requirement(node) for node in balance.as_list()))
+    return Requirements(
+        shares,
+        () if balance is None else tuple(_requirement(node) for node in balance.as_list()),
+        (1, "") if visits is None else (visits.as_int(1, 20), str(visits.where)),
+    )
 
 
 def _requirement(node: Node) -> Requirement:
@@ -113,8 +119,11 @@ def _requirement(node: Node) -> Requirement:
     return made
 
 
-def check_played(requirements: Requirements, populations: Sequence[str]) -> None:
-    """Raises BadInput for a policy that is spoken of and will not be played: before anything is."""
+def check_played(requirements: Requirements, populations: Sequence[str], visits: int = 1) -> None:
+    """Raises BadInput for a policy that is spoken of and will not be played, or too few visits: before any talk."""
+    least, where = requirements.visits
+    if visits < least:
+        raise BadInput(where, expected=f"{least} visits an episode", seen=visits, hint=f"play it so: --visits {least}")
     for requirement in requirements.balance:
         for name in (requirement.policy, *requirement.others()):
             if name not in populations:

@@ -17,7 +17,7 @@ def _numbers(values: Sequence[float]) -> dict[str, float]:
     return {name: round(float(v), 4) for name, v in zip(EMOTIONS, values, strict=True)}
 
 
-def _row(stall: str, policy: str, episode: int, decision: Decision) -> dict[str, Any]:
+def _row(stall: str, policy: str, episode: int, visit: int, decision: Decision) -> dict[str, Any]:
     before, after = decision.before, decision.after
     record = dict(after.record)
     earlier = before.story.visits
@@ -25,6 +25,7 @@ def _row(stall: str, policy: str, episode: int, decision: Decision) -> dict[str,
         "stall": stall,
         "policy": policy,
         "episode": episode,
+        **({"visit": visit} if visit else {}),
         "round": after.bargain.round,
         "item": after.item,
         "node": before.beat.node,
@@ -46,11 +47,14 @@ def _row(stall: str, policy: str, episode: int, decision: Decision) -> dict[str,
     }
 
 
-def log_lines(stall: str, policy: str, episode: int, decisions: Sequence[Decision], mode: str | None) -> str:
-    """The lines of one talk; mode: which of the body's layers acted, where bodies were played."""
+def log_lines(
+    stall: str, policy: str, episode: int, decisions: Sequence[Decision], mode: str | None, visit: int = 0
+) -> str:
+    """The lines of one talk; mode: which of the body's layers acted, where bodies were played; visit: its number, 0
+    where every episode is a single visit."""
     lines = []
     for decision in decisions:
-        row = _row(stall, policy, episode, decision)
+        row = _row(stall, policy, episode, visit, decision)
         if decision.shown is not None:
             row |= {"mode": mode, "units": list(decision.shown.units), "starts": decision.shown.starts}
         lines.append(json.dumps(row, ensure_ascii=False, separators=(",", ":")))

@@ -22,7 +22,7 @@ __all__ = ["Plan", "Run", "content_hash", "play"]
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be played: every population plays ``episodes`` talks at every stall."""
+    """What is to be played: every population plays ``episodes`` at every stall, each of ``visits`` talks."""
 
     stalls: tuple[str, ...]
     populations: tuple[str, ...]
@@ -33,11 +33,12 @@ class Plan:
     log: str = ""
     cover: bool = False
     per_job: int = 0  # 0: as many as suit the work
+    visits: int = 1
 
     @property
     def talks(self) -> int:
         """All of them."""
-        return self.episodes * len(self.stalls) * len(self.populations)
+        return self.episodes * self.visits * len(self.stalls) * len(self.populations)
 
     def jobs(self) -> Iterator[Job]:
         """In the order of the log."""
@@ -49,8 +50,9 @@ class Plan:
                 for first in range(0, self.episodes, size):
                     count = min(size, self.episodes - first)
                     yield Job(
-                        number, stall, population, self.seed, first, count, bodies, self.mode, self.log, self.cover
-                    )
+                        number, stall, population, self.seed, first, count, bodies, self.mode, self.log, self.cover,
+                        self.visits,
+                    )  # fmt: skip
                     number += 1
 
     def key(self) -> dict[str, Any]:
@@ -65,6 +67,7 @@ class Plan:
             "log": self.log,
             "cover": self.cover,
             "per_job": self.per_job,
+            "visits": self.visits,
             "contents": content_hash(self.stalls),
         }
 
@@ -76,6 +79,7 @@ def content_hash(stalls: tuple[str, ...]) -> str:
     for folder in {path.parent for path in files} | {DIALOGUE}:
         files |= {path.resolve() for path in folder.rglob("*.yaml")}
     files |= {ASSETS / "motion" / "units.yaml", ASSETS / "autoplay" / "strategies.yaml"}
+    files |= {ASSETS / "market" / "market.yaml"}
     for path in sorted(files):
         digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
@@ -87,10 +91,14 @@ Place = tuple[str, str, str]
 
 @dataclass
 class Run:
-    """What came of a run so far. talks: played; whole: whether that is all of them."""
+    """What came of a run so far. talks: played; whole: whether that is all of them.
+
+    tallies: of first visits, whatever came after them; returns: of later visits.
+    """
 
     plan: Plan
     tallies: dict[Place, Tally] = field(default_factory=dict)
+    returns: dict[Place, Tally] = field(default_factory=dict)
     coverage: dict[str, Coverage] = field(default_factory=dict)
     jobs: int = 0
     talks: int = 0
@@ -98,16 +106,17 @@ class Run:
 
     def add(self, job: Job, result: Result) -> None:
         """The next job's result."""
-        for policy, tally in result.tallies.items():
-            self.tallies.setdefault((job.stall, job.population, policy), Tally()).merge(tally)
+        for mine, found in ((self.tallies, result.tallies), (self.returns, result.returns)):
+            for policy, tally in found.items():
+                mine.setdefault((job.stall, job.population, policy), Tally()).merge(tally)
         self.coverage.setdefault(job.stall, Coverage()).merge(result.coverage)
         self.jobs += 1
-        self.talks += job.count
+        self.talks += job.talks
 
-    def total(self, stall: str, population: str) -> Tally:
-        """All who played of a population."""
+    def total(self, stall: str, population: str, *, later: bool = False) -> Tally:
+        """All who played of a population: their first visits, or their later ones."""
         total = Tally()
-        for (at, of, _), tally in sorted(self.tallies.items()):
+        for (at, of, _), tally in sorted((self.returns if later else self.tallies).items()):
             if (at, of) == (stall, population):
                 total.merge(tally)
         return total
@@ -122,6 +131,7 @@ class Run:
             "jobs": self.jobs,
             "talks": self.talks,
             "tallies": [[*place, tally.to_dict()] for place, tally in self.tallies.items()],
+            "returns": [[*place, tally.to_dict()] for place, tally in self.returns.items()],
             "coverage": {stall: coverage.to_dict() for stall, coverage in self.coverage.items()},
         }
 
@@ -129,8 +139,9 @@ class Run:
     def from_dict(plan: Plan, data: Mapping[str, Any]) -> Run:
         """What ``to_dict`` wrote."""
         run = Run(plan, jobs=data["jobs"], talks=data["talks"])
-        for stall, population, policy, tally in data["tallies"]:
-            run.tallies[stall, population, policy] = Tally.from_dict(tally)
+        for mine, kept in ((run.tallies, data["tallies"]), (run.returns, data["returns"])):
+            for stall, population, policy, tally in kept:
+                mine[stall, population, policy] = Tally.from_dict(tally)
         run.coverage = {stall: Coverage.from_dict(own) for stall, own in data["coverage"].items()}
         return run
 
@@ -163,7 +174,7 @@ def play(
     results = crew.results(given_out())
     try:
         for result in results:
-            bar.add(jobs[result.number].count)
+            bar.add(jobs[result.number].talks)
             early[result.number] = result
             while run.jobs in early:
                 ready = early.pop(run.jobs)
