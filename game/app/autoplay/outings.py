@@ -90,7 +90,7 @@ class Outing:
         script = self.seat.assets.script
         self.rng = random.Random(f"outing {self.seed} {self.episode}")
         self.talk = sit_down(self.seat, self.seed, self.episode)
-        opened = open_day(self.street.bazaar, (script,), self.talk.state.seed)
+        opened = open_day(self.street.bazaar, self._scripts(), self.talk.state.seed)
         self.afternoon = replace(opened, purse=self.talk.state.purse, place=script.stall)
 
     def come_back(self) -> None:
@@ -98,13 +98,13 @@ class Outing:
         assets, rng = self.seat.assets, self.rng
         self._book(self.talk)
         if self._is_over():
-            self.afternoon = next_day(self.street.bazaar, (assets.script,), self.afternoon)
+            self.afternoon = next_day(self.street.bazaar, self._scripts(), self.afternoon)
         elif self.street.others and rng.random() < WALKS:
             self._talk_elsewhere()
         elif rng.random() < PAUSES:
             self.afternoon = pass_time(self.street.bazaar, self.afternoon, self.street.bazaar.costs.pause)
         if self._is_over():
-            self.afternoon = next_day(self.street.bazaar, (assets.script,), self.afternoon)
+            self.afternoon = next_day(self.street.bazaar, self._scripts(), self.afternoon)
         self.afternoon = walk_to(self.street.bazaar, self.afternoon, assets.script.stall)
         left, last = self._left(self.seat), self.talk.state.item
         item = left[int(rng.random() * len(left))]
@@ -115,6 +115,9 @@ class Outing:
         if rng.random() < LEAVES:
             player = Leaver(player, 1 + int(rng.random() * LEAVES_WITHIN))
         self.talk = Talk(self.episode, self.seat, player, visit_stall(assets, self.afternoon, item))
+
+    def _scripts(self) -> tuple[Script, ...]:
+        return (self.seat.assets.script, *(guest.assets.script for guest in self.street.others))
 
     def _left(self, seat: Seat) -> list[str]:
         script = seat.assets.script
