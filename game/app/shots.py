@@ -22,9 +22,9 @@ SHOTS: dict[str, Camera] = {
     "home": HERO,
     "talk": Camera((0.36, 1.15, 3.16), (0.26, 0.93, 0.0), 25.5),
     "side": Camera((0.66, 1.15, 3.16), (0.56, 0.95, 0.0), 25.5),
-    "close": Camera((0.26, 1.17, 2.30), (0.165, 1.09, 0.0), 23.0),
-    "glance": Camera((0.33, 1.29, 2.98), (0.24, 0.87, 0.02), 26.0),
-    "offer": Camera((0.40, 1.40, 2.72), (0.26, 0.885, 0.05), 27.0),
+    "close": Camera((0.26, 1.17, 2.30), (0.165, 1.09, 0.0), 24.6),
+    "glance": Camera((0.33, 1.29, 2.98), (0.24, 0.87, 0.02), 27.2),
+    "offer": Camera((0.40, 1.40, 2.72), (0.26, 0.885, 0.05), 29.2),
 }
 """home: the whole stall. talk: room on the right for what may be said, the hands above the subtitles. side: a sheet
 covers the right half. close: the face fills the frame. glance: down to the hands, once. offer: over the table."""
