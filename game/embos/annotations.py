@@ -66,7 +66,8 @@ class Take:
 def read_takes(folder: Path, repertoire: Mapping[str, Behaviour], findings: Findings) -> list[Take]:
     """All takes of a folder, in order of their names; what is wrong goes into the findings."""
     paths = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
-    paths = [path for path in paths if path.name != "behaviours.yaml"]
+    # Names that begin with a dot are work in progress: the annotation desk's autosaves.
+    paths = [path for path in paths if path.name != "behaviours.yaml" and not path.name.startswith(".")]
     takes: list[Take] = []
     if not paths:
         hint = "one NAME.yaml and NAME.bvh per take"

@@ -12,10 +12,12 @@ import pytest
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
+from game.embos.annotations import read_takes
 from game.embos.clips import TakeClip
 from game.embos.findings import Findings
 from game.embos.repertoire import Behaviour, read_repertoire
 from game.tools.annotate import edits
+from game.tools.annotate.desk_jobs import learnable
 from game.tools.annotate.desk_repertoire import (
     add_behaviour,
     behaviours_of,
@@ -301,6 +303,8 @@ def test_work_is_kept_recovered_and_cleared_by_saving(take: Path, repertoire) ->
     desk.tick(0.6 * AUTOSAVE_S)
     assert autosave_path(desk.sheet.notes).exists()
     assert take.with_suffix(".yaml").read_bytes() == original, "the file itself waits for the save"
+    assert [t.name for t in read_takes(take.parent, repertoire, Findings())] == ["joy"], "an autosave is no take"
+    assert [p.name for p in learnable([take.parent], Path())] == ["joy.yaml"]
 
     after = Sheet.open(take)  # the window has died
     assert after.offer == desk.document

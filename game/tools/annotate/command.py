@@ -80,7 +80,7 @@ def automatic(args: argparse.Namespace, takes: Sequence[Path]) -> int:
 
 
 def _learnt(folder: Path, repertoire: dict[str, Behaviour]) -> list[tuple[Path, Example]]:
-    paths = sorted(p for p in folder.glob("*.yaml") if p.with_suffix(".bvh").exists()) if folder.is_dir() else []
+    paths = sorted(p for p in folder.glob("[!.]*.yaml") if p.with_suffix(".bvh").exists()) if folder.is_dir() else []
     if not paths:
         raise BadInput("--learn", expected="a folder of annotated takes (NAME.yaml and NAME.bvh)", seen=str(folder))
     learnt = []

@@ -62,7 +62,7 @@ def learnable(folders: Sequence[Path], without: Path) -> list[Path]:
     """The annotated takes of some folders (NAME.yaml beside NAME.bvh), each once, without one of them."""
     found: dict[Path, Path] = {}
     for folder in folders:
-        for notes in sorted(folder.glob("*.yaml")) if folder.is_dir() else []:
+        for notes in sorted(folder.glob("[!.]*.yaml")) if folder.is_dir() else []:
             if notes.with_suffix(".bvh").exists() and notes.resolve() != without.resolve():
                 found.setdefault(notes.resolve(), notes)
     return list(found.values())

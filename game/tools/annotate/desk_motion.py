@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from math import cos, radians, sin
+from math import atan, cos, degrees, radians, sin, tan
 
 import moderngl
 import numpy as np
@@ -17,6 +17,7 @@ from game.core.humanoid import HEAD_CENTRE_OFFSET, REFERENCE, TABLE_FRONT_Z_M, T
 from game.embos.clips import TakeClip
 from game.face import load_face, start_face
 from game.render import Camera, Device, Renderer, level_named
+from game.render.camera import DESIGN_ASPECT
 from game.tools.windows.imgui_backend import ImguiBackend, ImguiTexture
 from game.tools.windows.style import colour
 
@@ -25,6 +26,7 @@ __all__ = ["VIEWS", "MotionPictures", "Orbit", "draw_stick", "pose_at"]
 VIEWS = {"front": 0.0, "left": 90.0, "back": 180.0, "right": -90.0}
 """Where the camera stands, degrees about the person; left is the person's own."""
 _HALF_TABLE_M = 0.75
+_FOV_DEG, _LEAST_ASPECT = 29.0, 0.6
 _CUT_S = 0.2
 """A jump of the play head by more than this starts hair and ribbons anew."""
 
@@ -61,12 +63,14 @@ class Orbit:
         self.yaw_deg, self.pitch_deg = VIEWS[view], 4.0
         self.distance_m, self.target = Orbit().distance_m, Orbit().target
 
-    def camera(self) -> Camera:
-        """For the renderer."""
+    def camera(self, aspect: float) -> Camera:
+        """For a picture of width/height ``aspect``: the person is as tall in a narrow one, as long as it fits."""
         yaw, pitch = radians(self.yaw_deg), radians(self.pitch_deg)
         x, y, z = self.target
         out = self.distance_m * cos(pitch)
-        return Camera((x + out * sin(yaw), y + self.distance_m * sin(pitch), z + out * cos(yaw)), self.target, 29.0)
+        half = tan(radians(_FOV_DEG / 2.0)) * max(1.0, _LEAST_ASPECT / aspect) / max(1.0, DESIGN_ASPECT / aspect)
+        fov_deg = degrees(2.0 * atan(half))
+        return Camera((x + out * sin(yaw), y + self.distance_m * sin(pitch), z + out * cos(yaw)), self.target, fov_deg)
 
 
 def pose_at(clip: TakeClip, time_s: float) -> Pose:

@@ -122,7 +122,7 @@ class Timeline:
             if frames > 6.0:
                 label = f"{time_s:.2f} s · {round(time_s * desk.document.fps)}"
             else:
-                label = f"{int(time_s // 60)}:{time_s % 60:04.1f}" if time_s >= 60 else f"{time_s:g}"
+                label = f"{int(time_s // 60)}:{time_s % 60:02g}" if time_s >= 60 else f"{time_s:g}"
             pen.text(at + 4 * k, y + 2 * k, label, "ink", 14.5)
         pen.lines.pop_clip_rect()
 

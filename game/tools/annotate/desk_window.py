@@ -99,11 +99,12 @@ class DeskWindow:
         self.actions.tick(elapsed_s)
         boxes = self._layout()
         views = self._motion_boxes(boxes[0])
-        camera, clock = self.actions.orbit.camera(), self.desk.clock
+        clock, orbit = self.desk.clock, self.actions.orbit
         if self.actions.style != "stick":
             for i, (sheet, view) in enumerate(zip(self.desk.sheets, views, strict=True)):
                 pixels = (max(int(view[2]), 16), max(int(view[3]), 16))
                 stall = self.actions.style == "stall"
+                camera = orbit.camera(pixels[0] / pixels[1])
                 self._pictures.draw(i, sheet.clip, clock.time_s, camera, pixels, stall=stall)
         screen = self.device.context.screen
         screen.viewport = (0, 0, *size)
@@ -170,7 +171,7 @@ class DeskWindow:
             pen.box(x, y, w, h, colour("paper"), 5.0)
             pen.lines.push_clip_rect(corner, end, True)
             pose = pose_at(sheet.clip, desk.clock.time_s)
-            draw_stick(pen.lines, pose, self.actions.orbit.camera(), (x, y), (w, h))
+            draw_stick(pen.lines, pose, self.actions.orbit.camera(w / h), (x, y), (w, h))
             pen.lines.pop_clip_rect()
         pen.frame(x, y, w, h, colour("red" if index == desk.active and len(desk.sheets) > 1 else "line", 0.7), 1.5, 2.0)
         imgui.set_cursor_screen_pos(corner)
