@@ -22,9 +22,12 @@ import gc
 import os
 import sys
 import time
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+import moderngl
 import numpy as np
 import pygame
 
@@ -43,7 +46,7 @@ from game.app.world import World
 from game.core.errors import BadInput, MissingPart
 from game.render import Device, Level, level_named, pick_level
 
-__all__ = ["Window", "add_arguments", "need_display", "open_session", "run"]
+__all__ = ["Window", "add_arguments", "need_display", "open_session", "play_until_closed", "run"]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -87,7 +90,6 @@ def run(args: argparse.Namespace) -> int:
         avatar = avatar_of(args)
         need_display()
         session = open_session(args, avatar)
-        recorder = _recorder(session, args)
         screen = _warped(session, args)
         units = None if args.watch is None else watched_units(args.watch)
         width, height = args.size
@@ -96,9 +98,11 @@ def run(args: argparse.Namespace) -> int:
         pygame.display.quit()
         print(f"error: {error}; all the same without a window: run_game.py autoplay | snapshot", file=sys.stderr)
         return 2
+    recorder = _recorder(session, args)
     window = Window(session, device, screen=screen)
     window.inspector.units = None if units is None else UnitsWatch(units)
-    try:
+
+    def loop() -> None:
         window.draw()
         _set_icon(window)
         pygame.display.flip()
@@ -107,15 +111,30 @@ def run(args: argparse.Namespace) -> int:
         gc.enable()
         _choose_level(window, session.settings)
         _loop(window)
+
+    try:
+        play_until_closed(window, recorder, loop)
     finally:
-        if recorder is not None:
-            recorder.close(session)
-        window.close()
-        device.release()
+        with suppress(moderngl.Error, pygame.error):
+            window.close()
+            device.release()
         pygame.display.quit()
     if args.record is not None and recorder is not None and recorder.trouble:
         raise BadInput(recorder.trouble)
     return 0
+
+
+def play_until_closed(window: Window, recorder: Recorder | None, loop: Callable[[], None]) -> None:
+    """Run the loop; however it ends, the game and its recording are kept. Raises MissingPart where the picture is lost
+    (a driver that was reset, a display that went away)."""
+    try:
+        loop()
+    except (moderngl.Error, pygame.error) as error:
+        raise MissingPart(f"the picture was lost ({error}); the game was saved, start it again to go on") from None
+    finally:
+        window.keep()
+        if recorder is not None:
+            recorder.close(window.session)
 
 
 def _recorder(session: Session, args: argparse.Namespace) -> Recorder | None:

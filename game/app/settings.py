@@ -103,6 +103,8 @@ def save_settings(settings: Settings, folder: Path | None = None) -> str | None:
         try:
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 json.dump(asdict(settings), file, indent=1)
+                file.flush()
+                os.fsync(file.fileno())
             os.replace(name, path)
         except BaseException:
             os.unlink(name)

@@ -123,6 +123,7 @@ class Window:
         """One action of the player."""
         if action.kind == "quit":
             self.session.running = False
+            self.keep()
             return
         if action.kind == "key" and action.key == "f11":
             self.session.settings = self.session.settings.next("fullscreen")
@@ -217,9 +218,10 @@ class Window:
     def _go(self, screen: Screen | None) -> None:
         if screen is not None:
             self.screen = screen
-            self._autosave()
+            self.keep()
 
-    def _autosave(self) -> None:
+    def keep(self) -> None:
+        """Save the game as it stands, where there is one."""
         session = self.session
         if session.designed or not session.taken_up or not session.afternoon.wishes:
             return  # nothing has begun that could be lost, and something may be saved that has
@@ -264,7 +266,7 @@ class Window:
         assert self.show.puppet is not None
         session.watch.tick(session.assets, session.world, self.show.puppet.after[0])
         if intent.choice is not None:
-            self._autosave()
+            self.keep()
         self._go(self.screen.after_tick(session))
         self._direct()
 
@@ -277,7 +279,12 @@ class Window:
         self.direction = direct(self.direction, moment, reduced_motion=session.settings.reduced_motion)
 
     def advance(self, elapsed_s: float) -> None:
-        """Let the game run for some real time, in whole ticks; in photo mode time stands still."""
+        """Let the game run for some real time, in whole ticks; in photo mode time stands still.
+
+        A clock that jumps (a suspended machine, a corrected time) is a moment without news: never back, never a flood.
+        """
+        if not elapsed_s > 0.0:  # nan too
+            elapsed_s = 0.0
         if self.photo is not None:
             self.photo.advance(elapsed_s)
             return

@@ -82,10 +82,12 @@ class TableScreen(MenuScreen):
         canvas.text(left, 36, script.title.get(s.language), 23, PALETTE["white"], font="title")
         clock = session.market.bazaar.clock(afternoon.minutes)
         canvas.text(left + 364, 40, clock, 18, PALETTE["paper_warm"], font="bold", align="right")
-        canvas.text(left, 70, s("market_closed_short" if closed else "pick"), 17, PALETTE["white"])
-        canvas.text(
-            left + 364, 70, s("purse", money=session.money(afternoon.purse)), 17, PALETTE["paper_warm"], align="right"
-        )
+        purse, asked = s("purse", money=session.money(afternoon.purse)), s("market_closed_short" if closed else "pick")
+        canvas.text(left + 364, 70, purse, 17, PALETTE["paper_warm"], align="right")
+        size, room = 17.0, 350.0 - canvas.measure(purse, 17)
+        while canvas.measure(asked, size) > room and size > 11:
+            size -= 0.5
+        canvas.text(left, 70 + (17 - size) / 2, asked, size, PALETTE["white"])
         owned = afternoon.owned(script.stall)
         buttons = []
         for i, item in enumerate(items.values()):
