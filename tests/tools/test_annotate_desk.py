@@ -305,6 +305,9 @@ def test_work_is_kept_recovered_and_cleared_by_saving(take: Path, repertoire) ->
     assert take.with_suffix(".yaml").read_bytes() == original, "the file itself waits for the save"
     assert [t.name for t in read_takes(take.parent, repertoire, Findings())] == ["joy"], "an autosave is no take"
     assert [p.name for p in learnable([take.parent], Path())] == ["joy.yaml"]
+    others = learnable([take.parent, MOTION / "takes"], take.with_suffix(".yaml"))
+    assert "joy.yaml" not in {p.name for p in others}, "a copy of the take itself teaches nothing"
+    assert len(others) == 6
 
     after = Sheet.open(take)  # the window has died
     assert after.offer == desk.document

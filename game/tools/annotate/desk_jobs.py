@@ -59,12 +59,13 @@ class Job:
 
 
 def learnable(folders: Sequence[Path], without: Path) -> list[Path]:
-    """The annotated takes of some folders (NAME.yaml beside NAME.bvh), each once, without one of them."""
-    found: dict[Path, Path] = {}
+    """The annotated takes of some folders (NAME.yaml beside NAME.bvh), each name once, the first folder's; without one
+    of them: a copy of a take elsewhere would only repeat it."""
+    found: dict[str, Path] = {}
     for folder in folders:
         for notes in sorted(folder.glob("[!.]*.yaml")) if folder.is_dir() else []:
-            if notes.with_suffix(".bvh").exists() and notes.resolve() != without.resolve():
-                found.setdefault(notes.resolve(), notes)
+            if notes.with_suffix(".bvh").exists() and notes.name != without.name:
+                found.setdefault(notes.name, notes)
     return list(found.values())
 
 

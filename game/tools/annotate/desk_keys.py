@@ -23,6 +23,17 @@ class Binding:
     held: frozenset[str]
     run: Callable[[Actions], object]
 
+    @property
+    def again(self) -> bool:
+        """Whether a key that is held down does it over and over."""
+        return self.key in _AGAIN
+
+
+_AGAIN = {
+    pygame.K_LEFT, pygame.K_RIGHT, pygame.K_TAB, pygame.K_z, pygame.K_y,
+    pygame.K_PLUS, pygame.K_EQUALS, pygame.K_MINUS, pygame.K_KP_PLUS, pygame.K_KP_MINUS,
+}  # fmt: skip
+
 
 def _b(group: str, keys: str, does: str, key: int, run: Callable[[Actions], object], *held: str) -> Binding:
     return Binding(group, keys, does, key, frozenset(held), run)

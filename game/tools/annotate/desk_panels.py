@@ -150,7 +150,7 @@ class Panels:
         waiting = len(desk.proposals())
         self._buttons(("Propose  P", self.actions.propose))
         if waiting:
-            imgui.text_colored(self._tint("red"), f"{waiting} proposals to look at")
+            imgui.text_colored(self._tint("red"), f"proposed, to be looked at: {waiting}")
             self._buttons(
                 ("Accept all", lambda: desk.accept(everything=True)),
                 ("Reject all", lambda: desk.reject(everything=True)),
@@ -259,7 +259,7 @@ class Panels:
             self._bold(LAYER_TITLES[layer])
             imgui.same_line(120 * self.pen.k)
             imgui.text(f"{value}, {100 * result.observed[layer]:.1f} % of the frames alike")
-        self._bold(f"{len(result.differences)} stretches differ")
+        self._bold(f"Stretches that differ: {len(result.differences)}")
         for number, d in enumerate(result.differences):
             told = f"{d.start_s:7.2f} – {d.end_s:.2f} s   {d.first or '–'} / {d.second or '–'}##{number}"
             if imgui.selectable(told, False)[0]:

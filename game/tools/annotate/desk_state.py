@@ -236,7 +236,7 @@ class Desk(DeskTable):
                 count += 1
         sheet.history.do("propose", document)
         self.keep_selection()
-        self.tell(f"{count} proposals for {sheet.now.take}: A accepts, R rejects, Tab goes on to the next")
+        self.tell(f"{count} proposed for {sheet.now.take}: A accepts, R rejects, Tab goes on to the next")
 
 
 def moved_together(document: Document, marks: Iterable[Mark], shift_s: float) -> tuple[Document, tuple[Mark, ...]]:

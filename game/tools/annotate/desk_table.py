@@ -46,7 +46,7 @@ class DeskTable:
             self.brush.setdefault(layer, first)
         length = max(sheet.now.length_s for sheet in self.sheets)
         self.clock = Clock(length, self.sheets[0].now.fps)
-        self.view = TimeView(length)
+        self.view = TimeView(self.document.length_s)
 
     # -- takes -------------------------------------------------------------------------------------------------------
     @property
@@ -64,6 +64,9 @@ class DeskTable:
         self.active = index % len(self.sheets)
         self.selected, self.begun_s = (), None
         self.clock.fps = self.document.fps
+        if self.view.length_s != self.document.length_s:
+            self.view.length_s = self.document.length_s
+            self.view.fit()
 
     @property
     def unsaved(self) -> list[Sheet]:

@@ -146,7 +146,7 @@ class Timeline:
                 for word in desk.document.spoken:
                     a, b = (left + desk.view.x(t) for t in (word.start_s, word.end_s))
                     pen.box(a, top + 3 * k, b - a - 1, row.height - 6 * k, colour("blue", 0.14), 3.0)
-                    pen.text(a + 3 * k, top + 3 * k, word.text, "blue", 15, room=max(b - a, 30 * k))
+                    pen.text(a + 3 * k, top + 3 * k, word.text, "blue", 15, room=b - a - 4 * k)
             elif row.kind != "head":
                 if row.kind == "track":
                     for start, end in desk.document.gaps(row.layer) if row.layer == "posture" else []:

@@ -52,6 +52,7 @@ class DeskWindow:
         self._panels = Panels(actions, self.pen)
         self._dialogs = Dialogs(actions, self.pen, self._timeline, self._panels)
         self._k = 1.0
+        self._down: set[int] = set()
 
     # -- input -------------------------------------------------------------------------------------------------------
     def handle(self, event: pygame.event.Event) -> None:
@@ -65,8 +66,18 @@ class DeskWindow:
             self._backend.feed(event, ratio)
             if event.type == pygame.KEYDOWN and not self._backend.typing and not self._dialogs.asking:
                 binding = binding_of(event.key, event.mod, event.unicode)
-                if binding is not None:
+                if binding is not None and (binding.again or event.key not in self._down):
                     binding.run(self.actions)
+            self._follow_keys(event)
+
+    def _follow_keys(self, event: pygame.event.Event) -> None:
+        """Which keys are held: their repetitions, above all those of a slow frame, must not switch things twice."""
+        if event.type == pygame.KEYDOWN:
+            self._down.add(event.key)
+        elif event.type == pygame.KEYUP:
+            self._down.discard(event.key)
+        elif event.type == pygame.WINDOWFOCUSLOST:
+            self._down.clear()
 
     # -- drawing -----------------------------------------------------------------------------------------------------
     def _layout(self) -> tuple[Box, Box, Box, Box, Box]:
