@@ -301,3 +301,17 @@ def test_replay_refuses_what_it_cannot_play(tmp_path: Path, capsys: pytest.Captu
         message = capsys.readouterr().err
         assert message.startswith("error:")
         assert message.count("\n") == 1
+
+
+def test_autoplay_records_what_replay_plays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "talks"
+    assert main(["autoplay", "--episodes", "2", "--policy", "oracle", "--record", str(folder), "--json"]) == 0
+    capsys.readouterr()
+    paths = sorted(folder.iterdir())
+    assert [path.name for path in paths] == ["flea-oracle-1-000000.jsonl", "flea-oracle-1-000001.jsonl"]
+    assert main(["replay", str(paths[1]), "--headless", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["same"]
+    assert told["content"] == ""
+    assert main(["autoplay", "--visits", "2", "--record", str(folder)]) == 2
+    assert "--visits" in capsys.readouterr().err

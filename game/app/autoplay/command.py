@@ -53,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=int, default=1, help="one seed, one result (default 1)")
     parser.add_argument("--out", type=Path, help="write one JSON line per decision here; .gz compresses")
+    parser.add_argument("--record", type=Path, metavar="DIR", help="a recording of every talk, for replay")
     parser.add_argument("--resume", action="store_true", help="go on with the stopped run of --out")
     parser.add_argument("--body", action="store_true", help="also run the body planner; log units and why they began")
     parser.add_argument(
@@ -109,9 +110,12 @@ def run(args: argparse.Namespace) -> int:
 
     requirements = None if args.require is None else load_requirements(args.require)
     judged = any(x is not None for x in (args.report, args.plots, args.junit, args.require))
+    if args.record is not None and args.visits > 1:
+        raise BadInput("--record", expected="talks of first visits (--visits 1)", seen=f"--visits {args.visits}")
     plan = Plan(
         stalls, _populations(args.policy or ["random"]), args.episodes, args.seed, args.body, args.mode,
         "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged, visits=args.visits,
+        record="" if args.record is None else str(args.record.resolve()),
     )  # fmt: skip
     if requirements is not None:
         check_played(requirements, plan.populations, plan.visits)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import gzip
 import random
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
+from pathlib import Path
 from threading import get_ident
 from typing import Any
 
@@ -21,6 +23,9 @@ from game.app.bazaar import load_bazaar
 from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import Seat, mixture_of, seat
+from game.app.recording import content_hashes
+from game.app.recording.talks import write_talk
+from game.app.reload import watched_files
 from game.app.talk import TalkAssets
 from game.core.errors import BadInput
 from game.emotion import shown_values
@@ -52,6 +57,7 @@ class Job:
     log: str = ""
     cover: bool = False
     visits: int = 1
+    record: str = ""
 
     @property
     def talks(self) -> int:
@@ -109,6 +115,19 @@ def _seat(stall: str, policy: str, cover: bool, bodies: bool, thread: int) -> Se
     observer = _observer("full", False, thread)
     habit = habits_of(assets, observer) if policy == "reader" else None
     return seat(assets, policy, library=observer.planner.library, habit=habit)
+
+
+@lru_cache(maxsize=8)
+def _content(stall: str) -> dict[str, str]:
+    return content_hashes(watched_files(load_talk_assets(stall_path(stall)).script))
+
+
+def _record(job: Job, policy: str, episode: int, decisions: list[Decision]) -> None:
+    """The talk as a file that ``replay`` plays."""
+    moves = [(decision.before, decision.choice) for decision in decisions]
+    who = re.sub(r"[^0-9A-Za-z_-]+", "_", f"{Path(job.stall).stem}-{policy}-{job.seed}")
+    path = Path(job.record) / f"{who}-{episode:06d}.jsonl"
+    write_talk(path, job.stall, policy, moves, decisions[-1].after, _content(job.stall))
 
 
 def _players(job: Job) -> list[Seat]:
@@ -172,6 +191,8 @@ def work(job: Job) -> Result:
             tallies = result.tallies if visit == 1 else result.returns
             tallies.setdefault(player.name, Tally()).add(decisions)
             result.coverage.add(decisions)
+            if job.record:
+                _record(job, player.name, episode, decisions)
             if job.bodies:
                 _cover_faces(player, decisions, result.coverage)
             if job.log:

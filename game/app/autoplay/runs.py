@@ -22,7 +22,9 @@ __all__ = ["Plan", "Run", "content_hash", "play"]
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be played: every population plays ``episodes`` at every stall, each of ``visits`` talks."""
+    """What is to be played: every population plays ``episodes`` at every stall, each of ``visits`` talks.
+
+    record: a folder for a recording of every talk, "" for none."""
 
     stalls: tuple[str, ...]
     populations: tuple[str, ...]
@@ -34,6 +36,7 @@ class Plan:
     cover: bool = False
     per_job: int = 0  # 0: as many as suit the work
     visits: int = 1
+    record: str = ""
 
     @property
     def talks(self) -> int:
@@ -51,7 +54,7 @@ class Plan:
                     count = min(size, self.episodes - first)
                     yield Job(
                         number, stall, population, self.seed, first, count, bodies, self.mode, self.log, self.cover,
-                        self.visits,
+                        self.visits, self.record,
                     )  # fmt: skip
                     number += 1
 

@@ -1,0 +1,34 @@
+"""Coverage-guided fuzzing of every reader (extra ``fuzz``):
+
+    python tests/fuzz/fuzz_readers.py bvh -max_total_time=300
+    python tests/fuzz/fuzz_readers.py vrm -runs=100000 /tmp/more_corpus
+
+What is found lies as crash-… in the present folder; put it, made small, into tests/fuzz/corpus/READER, where
+tests/fuzz/test_fuzz_corpus.py reads it ever after.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import atheris
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parents[1]), str(HERE)]
+
+with atheris.instrument_imports(include=["game"]):
+    from readers import READERS, feed, scratch
+
+
+def main() -> None:
+    if len(sys.argv) < 2 or sys.argv[1] not in READERS:
+        sys.exit(f"usage: fuzz_readers.py {'|'.join(READERS)} [libFuzzer options]")
+    name, folder = sys.argv.pop(1), scratch()
+    corpus = HERE / "corpus" / name
+    atheris.Setup([*sys.argv, *([str(corpus)] if corpus.is_dir() else [])], lambda data: feed(name, data, folder))
+    atheris.Fuzz()
+
+
+if __name__ == "__main__":
+    main()
