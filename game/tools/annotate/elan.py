@@ -181,6 +181,8 @@ def _parse(path: Path) -> ElementTree.Element:
     except ElementTree.ParseError as error:
         line, column = error.position
         raise BadInput(f"ELAN file: {error.msg.split(':')[0]}", where=Where(path, line, column + 1)) from None
+    except (LookupError, ValueError) as error:  # an encoding nobody knows, or one of several bytes
+        raise BadInput("ELAN file", where=Where(path), expected="UTF-8", seen=str(error)) from None
     if (count := sum(1 for _ in root.iter())) > MAX_ELEMENTS:
         raise BadInput("ELAN file", where=Where(path), expected=f"at most {MAX_ELEMENTS} elements", seen=count)
     return root
