@@ -4,6 +4,7 @@ examples:
   run_game.py bench
   run_game.py bench planner render --json
   run_game.py bench autoplay --inkjs DIR      beside inkjs (npm install inkjs in DIR)
+  run_game.py bench soak --hours 8            does memory grow, or the number of GL objects? (not part of plain bench)
   run_game.py bench observer                  can the feeling be told from the body? (not part of plain bench)
 
 A floor is the least code that does the same work: NumPy alone, a bare scene, a hand-written loop. Benchmarks are no
@@ -37,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inkjs", type=Path, metavar="DIR", help="autoplay: a folder where inkjs is installed, for comparison"
     )
+    parser.add_argument("--hours", type=float, default=0.25, help="soak: simulated hours (default 0.25)")
     parser.add_argument("--json", action="store_true", help="machine-readable")
 
 
@@ -130,6 +132,13 @@ def observer(quick: bool = False) -> list[Row]:
     return bench_observer.rows(quick)
 
 
+def soak(hours: float = 0.25) -> list[Row]:
+    """Hours of play in one process: does anything grow? Not part of plain bench."""
+    from game.app import bench_soak
+
+    return bench_soak.rows(hours)
+
+
 BENCHES: dict[str, Callable[[], list[Row]]] = {
     "pose": pose,
     "planner": planner,
@@ -137,15 +146,18 @@ BENCHES: dict[str, Callable[[], list[Row]]] = {
     "autoplay": autoplay,
     "start": start,
     "observer": observer,
+    "soak": soak,
 }
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the chosen benches and print one table, or one JSON document."""
     results: dict[str, list[dict[str, Any]]] = {}
-    for name in args.what or [name for name in BENCHES if name != "observer"]:
+    for name in args.what or [name for name in BENCHES if name not in {"observer", "soak"}]:
         if name == "observer":
             rows = observer(args.quick)
+        elif name == "soak":
+            rows = soak(args.hours)
         else:
             rows = autoplay(args.inkjs) if name == "autoplay" else BENCHES[name]()
         results[name] = rows
