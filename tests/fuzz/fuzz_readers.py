@@ -25,8 +25,9 @@ def main() -> None:
     if len(sys.argv) < 2 or sys.argv[1] not in READERS:
         sys.exit(f"usage: fuzz_readers.py {'|'.join(READERS)} [libFuzzer options]")
     name, folder = sys.argv.pop(1), scratch()
-    corpus = HERE / "corpus" / name
-    atheris.Setup([*sys.argv, *([str(corpus)] if corpus.is_dir() else [])], lambda data: feed(name, data, folder))
+    new = scratch()  # libFuzzer keeps what it finds in the first folder: the small corpus stays small
+    seeds = [str(new), str(HERE / "corpus" / name)]
+    atheris.Setup([*sys.argv, *seeds], lambda data: feed(name, data, folder))
     atheris.Fuzz()
 
 
