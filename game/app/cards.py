@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,6 @@ class Cards:
         renderer = Renderer(self.device, stage.model, stage.stall, stage.backdrop, level=level)
         try:
             view = show.frame(world.body.face_params, camera=CARD_CAMERA, hidden_items=stage.gone(gone))
-            return renderer.snapshot(view, CARD_SIZE)
+            return renderer.snapshot(replace(view, near=False), CARD_SIZE)
         finally:
             renderer.release()

@@ -16,7 +16,7 @@ from game.app.rig import load_rig
 from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
 from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceSignal, FaceStyle, read_style, tessellate
-from game.formats import load_yaml
+from game.formats import Node, load_yaml
 from game.render import (
     DESIGN_SHARE,
     HERO,
@@ -31,6 +31,7 @@ from game.render import (
 )
 from game.render.assets import load_character, load_picture, load_stall
 from game.render.avatar_model import AvatarLook, AvatarModel
+from game.render.mood import MARKET_MOOD, read_mood
 
 if TYPE_CHECKING:
     from game.app.avatar import Avatar
@@ -97,16 +98,18 @@ def load_stage(
         model, rig = load_character(vrm), load_rig(vrm)
         head = rig.skeleton.rest_model[rig.driven[rig.source == _HEAD], 1, 3]
         lift_m = float(head[0] - REFERENCE.rest_model[_HEAD, 1, 3]) if len(head) else 0.0
+    told = load_yaml(stalls / f"{stall}.yaml")
+    mood = told.get("mood")
     return StageAssets(
         model=model,
         rig=rig,
         face=_style(characters / f"{person}.yaml"),
         lift_m=lift_m,
         avatar=avatar,
-        stall=load_stall(stalls / f"{stall}.glb"),
+        stall=load_stall(stalls / f"{stall}.glb", MARKET_MOOD if mood is None else read_mood(mood)),
         backdrop=load_picture(stalls / f"{stall}_backdrop.png"),
-        carries=_carries(stalls / f"{stall}.yaml"),
-        cards=_cards(stalls / f"{stall}.yaml"),
+        carries=_carries(told["goods"]),
+        cards=_cards(told["goods"]),
     )
 
 
@@ -116,15 +119,14 @@ def _style(path: Path) -> FaceStyle:
     return DEFAULT_STYLE if section is None else read_style(section)
 
 
-def _carries(path: Path) -> dict[str, str]:
-    goods = load_yaml(path)["goods"].as_list()
-    return {row["on"].as_str(): row["item"].as_str() for row in goods if row.get("on") is not None}
+def _carries(goods: Node) -> dict[str, str]:
+    return {row["on"].as_str(): row["item"].as_str() for row in goods.as_list() if row.get("on") is not None}
 
 
-def _cards(path: Path) -> dict[str, Card]:
+def _cards(goods: Node) -> dict[str, Card]:
     """Item -> where its price card stands."""
     cards = {}
-    for row in load_yaml(path)["goods"]:
+    for row in goods:
         card = row.get("card")
         if card is not None:
             x, z, turn_deg = (value.as_float() for value in card)

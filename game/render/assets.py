@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from game.render.model import (
     merge_static,
     on_legs,
 )
+from game.render.mood import MARKET_MOOD, Mood
 from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
 
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
@@ -71,7 +73,7 @@ def character_parts(vrm: Path) -> list[Part]:
     return [_part(file, primitive, "body") for primitive in _primitives(file, levels[min(levels)])]
 
 
-def load_stall(path: Path) -> StaticMesh:
+def load_stall(path: Path, mood: Mood = MARKET_MOOD) -> StaticMesh:
     """Read a stall's .glb: one node per group, items with their anchor, what sways with its pivots. Raises BadInput."""
     file = read_gltf(path)
     parts: list[Part] = []
@@ -92,7 +94,7 @@ def load_stall(path: Path) -> StaticMesh:
                 things.append((part, motion, _floats(primitive.attributes["_PIVOT"])))
             else:
                 parts.append(part)
-    return merge_static(parts, anchors, moving_meshes(things))
+    return replace(merge_static(parts, anchors, moving_meshes(things)), mood=mood)
 
 
 def load_picture(path: Path) -> NDArray[np.uint8]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from game.render.camera import Camera, look_at, orthographic
 from game.render.daylight import DESIGN_SHARE, Daylight, daylight
 from game.render.device import Device, Owner
+from game.render.mood import MARKET_MOOD, Mood
 
 __all__ = ["STALL_LIGHT", "STUDIO_LIGHT", "TABLE_LIGHT", "FrameBlock", "LightBox", "Lights"]
 
@@ -29,9 +30,17 @@ class Lights:
     day: Daylight
 
     @classmethod
-    def market(cls, day_share: float = DESIGN_SHARE) -> Lights:
-        """The light at a share of the afternoon."""
+    def market(cls, day_share: float = DESIGN_SHARE, mood: Mood = MARKET_MOOD) -> Lights:
+        """The light at a share of the afternoon, in a stall's own colours; towards evening lamps are alike anywhere."""
         day = daylight(day_share)
+        own = 1.0 - 0.5 * day.lamps
+        tints = {name: 1.0 + own * (np.array(getattr(mood, name)) - 1.0) for name in ("lit", "shade", "deep", "rim")}
+        far = 1.0 + own * (np.array(mood.far) - 1.0)
+        day = replace(
+            day,
+            **{name: getattr(day, name) * tint for name, tint in tints.items()},
+            **{name: getattr(day, name) * far for name in ("sky", "horizon", "ground")},
+        )
         return cls(np.asarray(day.sun), _unit(0.75, 0.45, -0.55), _unit(-0.8, 0.25, -0.5), day)
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from game.core.errors import BadInput
 from game.render.grading import palette_bytes
+from game.render.mood import MARKET_MOOD, Mood
 from game.render.silhouette import Edges, find_edges
 
 if TYPE_CHECKING:
@@ -143,6 +144,7 @@ class StaticMesh:
     runs: tuple[Run, ...]
     anchors: Mapping[str, tuple[float, float, float]]  # group of an item -> centre of its foot on the table, m
     moving: tuple[MovingMesh, ...] = ()  # what sways and spins
+    mood: Mood = MARKET_MOOD
 
     @property
     def groups(self) -> frozenset[str]:

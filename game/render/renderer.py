@@ -24,6 +24,7 @@ from game.render.item_drawing import ItemDrawing, ItemView
 from game.render.levels import DEFAULT, Level
 from game.render.lighting import STUDIO_LIGHT, TABLE_LIGHT, FrameBlock, LightBox, Lights
 from game.render.model import CharacterModel, StaticMesh
+from game.render.mood import MARKET_MOOD
 from game.render.motes import Motes
 from game.render.moving_drawing import MovingDrawing
 from game.render.output import Output
@@ -74,7 +75,8 @@ class Renderer(Owner):
         self._model = model
         self._scene = self.own(SceneDrawing(device, stall, backdrop))
         self._frame = self.own(FrameBlock(device))
-        self._lights = Lights.market()
+        self._mood = MARKET_MOOD if stall is None else stall.mood
+        self._lights = Lights.market(mood=self._mood)
         self._motes = self.own(Motes(device))
         self.hud = self.own(Hud(device, fonts))
         self._hidden_face = hidden_face()
@@ -115,6 +117,8 @@ class Renderer(Owner):
         self._model, self._face = model, None
         self._stall, self._backdrop = stall, backdrop
         self._moving_meshes = stall.moving if stall is not None else ()
+        self._mood = MARKET_MOOD if stall is None else stall.mood
+        self._lights = Lights.market(self._lights.day.share, self._mood)
         self.set_level(self.level)
 
     def set_level(self, level: Level) -> None:
@@ -209,7 +213,7 @@ class Renderer(Owner):
         targets = canvas.targets
         canvas.item = ()
         day_share = stepped(view.day_share) if view.show_stall else DESIGN_SHARE
-        key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share)
+        key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share, view.near)
         self._light_up(day_share)
         changed = canvas.last_box
         with self.times.measured("bake"):
@@ -253,7 +257,7 @@ class Renderer(Owner):
 
     def _light_up(self, day_share: float) -> None:
         if self._lights.day.share != day_share:
-            self._lights = Lights.market(day_share)
+            self._lights = Lights.market(day_share, self._mood)
             self._light = None
 
     def _bake(self, key: BakeKey, canvas: _Canvas) -> bool:

@@ -43,6 +43,7 @@ class BakeKey:
     stall: bool
     hidden: frozenset[str]
     day_share: float = DESIGN_SHARE
+    near: bool = True
 
 
 class SceneDrawing(Owner):
@@ -64,7 +65,7 @@ class SceneDrawing(Owner):
         self._shadow_target = self.own(context.framebuffer([], self.shadow_map))
         self._frame = self.own(FrameBlock(device))
         self._lights = Lights.market()
-        self._foreground = self.own(Foreground(device))
+        self._foreground = self.own(Foreground(device, "none" if mesh is None else mesh.mood.near))
         if mesh is not None:
             self._make_mesh(device, mesh)
         self._make_receiver(device)
@@ -159,7 +160,7 @@ class SceneDrawing(Owner):
         self._draw_hulls(runs)
         # Before a stall, not an item in the hand; in a narrow picture it would stand before the hands.
         wide = key.size[0] >= WIDE * key.size[1]
-        if wide and any(run.group == "table" for run in runs):
+        if wide and key.near and any(run.group == "table" for run in runs):
             self._foreground.draw(key.camera)
         targets.resolve(raw)
         self._make_bloom(targets)

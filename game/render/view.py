@@ -33,6 +33,7 @@ class FrameView:
     hidden_items: groups of the stall (``item:teapot_gold``) that are not there. hud: draws interface on top.
     crowd: passers-by behind the stall, as many as the renderer was given looks for.
     day_share: of the afternoon, 0 at 13:00 to 1 at 18:00.
+    near False leaves out what stands nearest to the eye.
     item: an item of the stall to be shown large, in the place of everything else.
     """
 
@@ -47,4 +48,5 @@ class FrameView:
     day_share: float = DESIGN_SHARE
     crowd: CrowdView | None = None
     item: ItemView | None = None
+    near: bool = True
     hud: Callable[[Hud], None] | None = None

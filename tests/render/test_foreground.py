@@ -7,16 +7,37 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from game.core import ASSETS, BadInput
+from game.formats import load_yaml
 from game.render import HERO, FrameView, Renderer
-from game.render.foreground import flower_corner
+from game.render.foreground import CORNERS
+from game.render.mood import NEAR, read_mood
+
+_STALLS = ("flea", "antiques", "toys")
 
 
-@pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_a_corner_is_drawn_near_the_corner(side: float) -> None:
-    rows = flower_corner(side, 5)
-    assert (np.abs(rows[:, 0]) > 0.78).all()
-    assert (rows[:, 1] < -0.6).all()
-    assert np.array_equal(rows, flower_corner(side, 5))
+@pytest.mark.parametrize("near", CORNERS)
+def test_a_corner_is_drawn_near_the_corner(near: str) -> None:
+    for side, corner in zip((-1.0, 1.0), CORNERS[near], strict=True):
+        rows = np.array(corner(side))
+        assert rows.shape[1] == 10
+        assert (side * rows[:, 0] > 0.78).all()
+        assert (rows[:, 1] < -0.5).all()
+        assert np.array_equal(rows, corner(side))
+
+
+def test_each_stall_has_a_near_layer_and_a_light_of_its_own(tmp_path) -> None:
+    moods = {name: read_mood(load_yaml(ASSETS / "stalls" / f"{name}.yaml")["mood"]) for name in _STALLS}
+    assert len({mood.near for mood in moods.values()}) == 3
+    assert {mood.near for mood in moods.values()} <= set(NEAR)
+    assert moods["antiques"].shade[2] > moods["antiques"].shade[0], "shade under the temple's trees is cool"
+    wrong = tmp_path / "stall.yaml"
+    wrong.write_text("mood: {near: jungle}\n")
+    with pytest.raises(BadInput, match="garden"):
+        read_mood(load_yaml(wrong)["mood"])
+    wrong.write_text("mood: {lit: [1, 1]}\n")
+    with pytest.raises(BadInput, match="three factors"):
+        read_mood(load_yaml(wrong)["mood"])
 
 
 @pytest.mark.gl
@@ -31,9 +52,7 @@ def test_it_stands_before_the_stall_at_the_corners_and_passes_by(device, stall, 
     try:
         with_it = shot(view)
         moved = shot(replace(view, camera=replace(HERO, eye=(0.3, 1.16, 3.02), target=(0.3, 0.985, 0.0))))
-        renderer._scene._foreground._count = 0
-        renderer._canvas.baked = None
-        without = shot(view)
+        without = shot(replace(view, near=False))
     finally:
         renderer.release()
     covered = np.abs(with_it - without).max(axis=2) > 10

@@ -95,7 +95,7 @@ class StallSpec:
 def load_stall(path: Path) -> StallSpec:
     """Read ``assets/stalls/<id>.yaml``. Raises BadInput with file:line:col."""
     node = load_yaml(path)
-    node.only("id", "backdrop", "palette", "pieces", "goods", "cards", "contact_shadow")
+    node.only("id", "backdrop", "mood", "palette", "pieces", "goods", "cards", "contact_shadow")
     palette = read_palette(node["palette"])
     backdrop = node["backdrop"].only("recipe", "seed")
     if backdrop["recipe"].as_str() not in BACKDROPS:
