@@ -3,6 +3,7 @@
 from game.animation.body_size import BodySize, measure_body
 from game.animation.fitting import NEEDED, Fitting, fit_to
 from game.animation.liveliness import GAZE_AWAY, GAZE_CUSTOMER, GAZE_GOODS, LifeConfig
+from game.animation.motion_bank import KnownUnits
 from game.animation.performer import MODES, Mode, Performer, PerformerState, PerformSignal
 from game.animation.pose import Pose, interpolate_pose, joint_accelerations, largest_joint_acceleration
 from game.animation.skinning import EyeBones, Rig
@@ -17,6 +18,7 @@ __all__ = [
     "BodySize",
     "EyeBones",
     "Fitting",
+    "KnownUnits",
     "LifeConfig",
     "Mode",
     "PerformSignal",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Hashable
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from game.core.errors import BadInput
 from game.embos import MotionUnit, UnitLibrary, Variant
 from game.embos.mixing import RADIUS
 
-__all__ = ["FPS", "MotionBank", "bake"]
+__all__ = ["FPS", "KnownUnits", "MotionBank", "bake"]
 
 FPS = 30.0
 """Rows per second; takes of another frame rate are resampled."""
@@ -68,15 +69,39 @@ class MotionBank:
                 value.setflags(write=False)
 
 
-def bake(library: UnitLibrary, layers: tuple[str, ...], radius: float = RADIUS) -> MotionBank:
+@dataclass(frozen=True, eq=False)
+class BakedUnit:
+    """One unit's variants as rows at FPS, ready to be laid side by side. owned: (PARTS,) bool; frame: (2,) index into
+    CONTACT_FRAMES; stroke, loop_first, loop_frames as in MotionBank."""
+
+    spans: tuple[Floats, ...]
+    owned: Bools
+    frame: NDArray[np.intp]
+    stroke: float
+    loop_first: float
+    loop_frames: float
+
+
+@dataclass
+class KnownUnits:
+    """The units of the last baking, by all that their rows follow from: those that stay the same are not made anew."""
+
+    units: dict[Hashable, BakedUnit] = field(default_factory=dict)
+
+
+def bake(
+    library: UnitLibrary, layers: tuple[str, ...], radius: float = RADIUS, known: KnownUnits | None = None
+) -> MotionBank:
     """Rows of every variant in the library. Raises BadInput for a unit without motion or an unknown contact."""
     takes: dict[str, rw.TakeRows] = {}
+    before = {} if known is None else known.units
+    baked: dict[Hashable, BakedUnit] = {}
     units = library.units
     most = max(max((len(library.variants_of(u, k)) for u in range(len(units)) for k in range(7)), default=1), 1)
     shape = (len(units), len(EMOTIONS), most)
     first = np.zeros(shape, dtype=np.int32)
     frames = np.ones(shape, dtype=np.float32)
-    before, after = np.zeros(shape, dtype=np.float32), np.ones(shape, dtype=np.float32)
+    before_s, after_s = np.zeros(shape, dtype=np.float32), np.ones(shape, dtype=np.float32)
     count = np.zeros(shape[:2], dtype=np.int32)
     stroke, loop_first, loop_frames = (np.zeros(len(units), dtype=np.float32) for _ in range(3))
     owned = np.zeros((len(units), len(ch.PARTS)), dtype=bool)
@@ -88,37 +113,31 @@ def bake(library: UnitLibrary, layers: tuple[str, ...], radius: float = RADIUS) 
             continue
         if not unit.variants:
             raise BadInput(f"unit {unit.name}", expected="at least one span of a take", seen="none")
-        owned[u] = np.ones(len(ch.PARTS), dtype=bool) if unit.layer == "posture" else _owned(unit)
-        frame[u] = _contacts(unit)
-        spans = [_span_rows(library, takes, unit, v) for v in unit.variants]
-        spans[0] = rw.align_to(spans[0], rw.REST_ROW)
-        spans = [rw.align_to(rows, spans[0].mean(axis=0)) for rows in spans]
-        if unit.layer == "posture":
-            spans = [rw.seamless_loop(rows) for rows in spans]
-        else:
-            spans, stroke[u] = _aligned(unit, spans)
-            period = rw.period_of(spans[0], owned[u]) if unit.layer == "mannerism" else None
-            if period is not None:
-                loop_first[u], loop_frames[u] = period
-            spans = [rw.additive_rows(rows, owned[u], ADDITIVE_SHARE) for rows in spans]
-        for variant, rows in zip(unit.variants, spans, strict=True):
+        source = _source(library, unit)
+        own = before.get(source) or _baked(library, takes, unit)
+        baked[source] = own
+        owned[u], frame[u], stroke[u] = own.owned, own.frame, own.stroke
+        loop_first[u], loop_frames[u] = own.loop_first, own.loop_frames
+        for variant, rows in zip(unit.variants, own.spans, strict=True):
             k, v = variant.emotion, count[u, variant.emotion]
             first[u, k, v], frames[u, k, v] = total, len(rows) - 1
             lead = variant.stroke_offset_s if unit.layer == "gesture" else 0.0
-            before[u, k, v], after[u, k, v] = lead, max(variant.length_s - lead, 1.0 / FPS)
+            before_s[u, k, v], after_s[u, k, v] = lead, max(variant.length_s - lead, 1.0 / FPS)
             count[u, k] += 1
             chunks.append(rows)
             total += len(rows)
         # An emotion without a variant points at one that exists: weight 0 times a finite row is 0.
         empty = np.arange(most) >= count[u][:, None]
         first[u][empty], frames[u][empty] = total - len(rows), len(rows) - 1
+    if known is not None:
+        known.units = baked
     return MotionBank(
         rows=np.concatenate(chunks),
         first=first,
         frames=frames,
         count=count,
-        before_s=before,
-        after_s=after,
+        before_s=before_s,
+        after_s=after_s,
         stroke=stroke,
         loop_first=loop_first,
         loop_frames=loop_frames,
@@ -130,6 +149,29 @@ def bake(library: UnitLibrary, layers: tuple[str, ...], radius: float = RADIUS) 
         neutral_posture=_neutral_posture(library),
         rest=np.array([_rest(library, layer) for layer in layers], dtype=np.int32),
     )
+
+
+def _source(library: UnitLibrary, unit: MotionUnit) -> Hashable:
+    """All that a unit's rows follow from; takes by identity, which readers keep where the bytes stay the same."""
+    takes = tuple(library.clips.get(variant.take) for variant in unit.variants)
+    return unit.layer, unit.uses, tuple(sorted((unit.contacts or {}).items())), unit.variants, takes
+
+
+def _baked(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: MotionUnit) -> BakedUnit:
+    """The rows of one unit. takes: what has been made of whole takes so far."""
+    owned = np.ones(len(ch.PARTS), dtype=bool) if unit.layer == "posture" else _owned(unit)
+    stroke, period = 0.0, None
+    spans = [_span_rows(library, takes, unit, v) for v in unit.variants]
+    spans[0] = rw.align_to(spans[0], rw.REST_ROW)
+    spans = [rw.align_to(rows, spans[0].mean(axis=0)) for rows in spans]
+    if unit.layer == "posture":
+        spans = [rw.seamless_loop(rows) for rows in spans]
+    else:
+        spans, stroke = _aligned(unit, spans)
+        period = rw.period_of(spans[0], owned) if unit.layer == "mannerism" else None
+        spans = [rw.additive_rows(rows, owned, ADDITIVE_SHARE) for rows in spans]
+    loop_first, loop_frames = period or (0, 0)
+    return BakedUnit(tuple(spans), owned, _contacts(unit), stroke, loop_first, loop_frames)
 
 
 def _owned(unit: MotionUnit) -> Bools:

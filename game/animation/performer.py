@@ -8,7 +8,7 @@ decisions -> playback    rows of the running units, variants mixed (EMBOS eq. 5)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from game.animation import bilinear as bl
 from game.animation import blending, collision, figure, limbs, liveliness, playback
 from game.animation import channels as ch
-from game.animation.motion_bank import MotionBank, bake
+from game.animation.motion_bank import KnownUnits, MotionBank, bake
 from game.animation.pose import Pose
 from game.core.emotion_space import EMOTIONS
 from game.core.humanoid import HEAD_CENTRE_OFFSET
@@ -93,13 +93,15 @@ class Performer:
         life: liveliness.LifeConfig | None = None,
         collide: bool = True,
         radius: float = RADIUS,
+        known: KnownUnits | None = None,
     ) -> None:
-        """layers, radius: the planner's order and r of eq. 5; collide: keep hands out of body and table."""
+        """layers, radius: the planner's order and r of eq. 5; collide: keep hands out of body and table; known: what
+        stayed the same since another performer was made is not made anew."""
         self.library = library
         self.layers = layers
         self.life = life or liveliness.LifeConfig()
         self.collide = collide
-        self.bank: MotionBank = bake(library, layers, radius)
+        self.bank: MotionBank = bake(library, layers, radius, known)
         self._posture = layers.index("posture")
         self._held_by_mode: dict[str, tuple[int, ...]] = {
             "full": (),
@@ -121,6 +123,13 @@ class Performer:
             push=np.zeros((n, 2, 3)),
             push_speed=np.zeros((n, 2, 3)),
         )
+
+    def adopt(self, state: PerformerState) -> PerformerState:
+        """Characters who moved by another repertoire, before their next tick: they go on from where they are."""
+        n, layers = state.playback.unit.shape
+        if layers != len(self.layers):
+            return replace(self.start(n), life=state.life, gaze=state.gaze)
+        return replace(state, playback=playback.start(n, layers))
 
     def advance(
         self, state: PerformerState, decisions: Decisions, signal: PerformSignal, dt_s: float

@@ -87,8 +87,8 @@ class Passersby:
     """The moving crowd. ``tick`` follows the world; ``view`` is what a frame between two ticks shows."""
 
     def __init__(self, cast: Cast, planner: Planner, performer: Performer, seed: int) -> None:
-        self._cast, self._planner, self._performer = cast, planner, copy(performer)
-        self._performer.collide = False  # nobody sees a hand touch a body from here
+        self._cast, self._seed = cast, seed
+        self._move_by(planner, performer)
         self._count = len(cast.looks)
         self._strolls = Strolls(self._count, seed)
         self._mood = np.zeros((self._count, len(EMOTIONS)))
@@ -102,6 +102,19 @@ class Passersby:
         self._rows = [(rig, np.array([i for i, own in enumerate(cast.rigs) if own is rig])) for rig in rigs]
         pose = self._advance(0.0, np.zeros(self._count, bool))
         self._after = self._before = self._placed(pose, 0.0)
+
+    def _move_by(self, planner: Planner, performer: Performer) -> None:
+        self._planner, self._performer = planner, copy(performer)
+        self._performer.collide = False  # nobody sees a hand touch a body from here
+
+    def take_up(self, planner: Planner, performer: Performer) -> None:
+        """Move by other units from now on, from the poses of this moment; the same units change nothing."""
+        if planner is self._planner:
+            return
+        self._move_by(planner, performer)
+        self._plan = planner.start(self._count, self._seed ^ 0x0C40)
+        self._state = self._performer.adopt(self._state)
+        self._words = np.zeros((self._count, len(planner.library.gestures)))
 
     def tick(self, world: World) -> None:
         """One tick on, at the world's time."""

@@ -7,17 +7,17 @@ import threading
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from game.animation import Performer
+from game.animation import KnownUnits, Performer
 from game.app.reload import Watch
 from game.app.session import Session
 from game.core.errors import BadInput, GameError
 from game.core.paths import ASSETS
-from game.embos import Planner, UnitLibrary, load_config
+from game.embos import KnownClips, Planner, UnitLibrary, load_config
 
-__all__ = ["UnitsWatch", "load_body", "take_up_units", "watched_units"]
+__all__ = ["Known", "UnitsWatch", "load_body", "take_up_units", "watched_units"]
 
-POLL_S = 0.2
-"""Files are looked at five times a second: new units are to be seen within a second."""
+POLL_S = 0.1
+"""Files are looked at ten times a second: new units are to be seen within a second."""
 SAID_S = 6.0
 """How long the news of new units stands; that they are broken stands until they are not."""
 
@@ -31,23 +31,32 @@ def watched_units(folder: Path) -> Path:
     return beside if beside.is_file() and not inside.is_file() else inside
 
 
-def load_body(units: Path) -> tuple[Planner, Performer]:
+@dataclass
+class Known:
+    """What readings have in common: takes and units that did not change are not made anew."""
+
+    clips: KnownClips = field(default_factory=KnownClips)
+    units: KnownUnits = field(default_factory=KnownUnits)
+
+
+def load_body(units: Path, known: Known | None = None) -> tuple[Planner, Performer]:
     """Units with their clips, ready to be played. Raises BadInput with file and place."""
     own = units.parent / "planner.yaml"
-    library = UnitLibrary.load(units)
+    known = known or Known()
+    library = UnitLibrary.load(units, known.clips)
     planner = Planner(library, load_config(own if own.is_file() else ASSETS / "motion" / "planner.yaml"))
-    return planner, Performer(library, layers=planner.tables.layers)
+    return planner, Performer(library, layers=planner.tables.layers, known=known.units)
 
 
 def take_up_units(session: Session, planner: Planner, performer: Performer) -> None:
-    """Every stall's shopkeeper moves by these units from now on; the talk goes on where it stands."""
+    """Every stall's shopkeeper moves by these units from now on, from the pose of this moment; the talk goes on."""
     world = session.world
-    state = planner.start(1, world.seed)
+    state, moving = planner.start(1, world.seed), world.body.performer
     body = replace(
         world.body,
         planner=state,
         decisions=state.decisions,
-        performer=performer.start(1, world.seed),
+        performer=None if moving is None else performer.adopt(moving),
         signal=None,
     )
     # What the present line calls up is counted in the old units' order.
@@ -77,6 +86,7 @@ class UnitsWatch:
     _said_s: float = 0.0
     _seen: bool = False
     _thread: threading.Thread | None = None
+    _known: Known = field(default_factory=Known)
     _read: list[tuple[Planner, Performer] | str] = field(default_factory=list)
     _body: tuple[Planner, Performer] | None = None
 
@@ -93,7 +103,8 @@ class UnitsWatch:
             self._said_s -= elapsed_s
             self.said = self.said if self._said_s > 0.0 else ""
         self._late_s += elapsed_s
-        if self._late_s < POLL_S:
+        read = self._thread is not None and not self._thread.is_alive()
+        if self._late_s < POLL_S and not read:
             return
         self._late_s = 0.0
         changed = self._watch.look(self.files) or not self._seen
@@ -122,7 +133,7 @@ class UnitsWatch:
 
     def _work(self) -> None:
         try:
-            self._read.append(load_body(self.units))
+            self._read.append(load_body(self.units, self._known))
         except (GameError, OSError) as error:
             self._read.append(str(error))
 

@@ -291,6 +291,9 @@ class Window:
         self.inspector.reloader.advance(self.session, elapsed_s)
         if self.inspector.units is not None:
             self.inspector.units.advance(self.session, elapsed_s)
+            assets = self.session.assets
+            if self.crowd is not None and assets.performer is not None:
+                self.crowd.take_up(assets.planner, assets.performer)
         self._late_s = min(self._late_s + elapsed_s, MAX_TICKS_A_FRAME * TICK_S)
         while self._late_s >= TICK_S:
             self._late_s -= TICK_S

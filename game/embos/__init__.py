@@ -1,6 +1,6 @@
 """EMBOS: motion units, the four factors of eq. 1, the planner, the statistics of takes and the mixing of variants."""
 
-from game.embos.clips import ClipBank, TakeClip, load_clips, pack_clips
+from game.embos.clips import ClipBank, KnownClips, TakeClip, load_clips, pack_clips
 from game.embos.config import PlannerConfig, load_config
 from game.embos.cues import GestureCues, timed_tokens
 from game.embos.explain import Candidate
@@ -19,6 +19,7 @@ __all__ = [
     "ClipBank",
     "Decisions",
     "GestureCues",
+    "KnownClips",
     "MotionUnit",
     "Planner",
     "PlannerConfig",

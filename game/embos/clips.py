@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from game.core.errors import BadInput, Where
 from game.core.humanoid import REFERENCE
 
-__all__ = ["MAX_BYTES", "ClipBank", "TakeClip", "load_clips", "pack_clips", "same_clips"]
+__all__ = ["MAX_BYTES", "ClipBank", "KnownClips", "TakeClip", "load_clips", "pack_clips", "same_clips"]
 
 MAX_BYTES = 256_000_000
 """No clips file may unpack to more."""
@@ -73,6 +73,16 @@ class ClipBank(Mapping[str, TakeClip]):
         return len(self._takes)
 
 
+Mark = tuple[tuple[str, int, int, int], ...]
+
+
+@dataclass
+class KnownClips:
+    """The takes of the last clips file that was read, by what tells their bytes apart."""
+
+    takes: dict[Mark, TakeClip] = field(default_factory=dict)
+
+
 def pack_clips(bank: Mapping[str, TakeClip]) -> bytes:
     """The bytes of a clips file, the same for the same takes on every run (no time stamps inside)."""
     arrays: dict[str, NDArray[Any]] = {}
@@ -109,16 +119,24 @@ def same_clips(path: Path, bank: Mapping[str, TakeClip]) -> bool:
     return True
 
 
-def load_clips(path: Path) -> ClipBank:
-    """Read a clips file. Raises BadInput where it is missing, broken, too large or of another skeleton."""
+def load_clips(path: Path, known: KnownClips | None = None) -> ClipBank:
+    """Read a clips file. Raises BadInput where it is missing, broken, too large or of another skeleton.
+
+    ``known`` remembers the takes of the last reading: those whose bytes are the same are not unpacked again.
+    """
     where = Where(path)
+    old: dict[str, TakeClip] = {}
     try:
         with zipfile.ZipFile(path) as archive:
-            unpacked = sum(entry.file_size for entry in archive.infolist())
+            entries = archive.infolist()
+        unpacked = sum(entry.file_size for entry in entries)
         if unpacked > MAX_BYTES:
             raise BadInput("clips", where=where, expected=f"at most {MAX_BYTES} bytes", seen=unpacked)
+        marks = _marks(entries)
+        if known is not None:
+            old = {name: known.takes[mark] for name, mark in marks.items() if mark in known.takes}
         with np.load(path, allow_pickle=False) as data:
-            arrays = {name: data[name] for name in data.files}
+            arrays = {name: data[name] for name in data.files if name.rpartition("/")[0] not in old}
     except BadInput:
         raise
     except FileNotFoundError:
@@ -151,4 +169,16 @@ def load_clips(path: Path) -> ClipBank:
             takes[name] = TakeClip(turn, root, float(frame_time.reshape(())))
         except BadInput as error:
             raise BadInput(error.message, where=Where(path, pointer=name)) from None
-    return ClipBank(takes)
+    takes |= old
+    if known is not None:
+        known.takes = {marks[name]: take for name, take in takes.items()}
+    return ClipBank({name: takes[name] for name in sorted(takes)})
+
+
+def _marks(entries: list[zipfile.ZipInfo]) -> dict[str, Mark]:
+    """Take name -> what tells its bytes from others: members, check sums, sizes packed and unpacked."""
+    parts: dict[str, list[tuple[str, int, int, int]]] = {}
+    for entry in entries:
+        take, _, part = entry.filename.rpartition("/")
+        parts.setdefault(take, []).append((part, entry.CRC, entry.compress_size, entry.file_size))
+    return {take: tuple(sorted(own)) for take, own in parts.items()}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.core.errors import BadInput
-from game.embos.clips import ClipBank, load_clips
+from game.embos.clips import ClipBank, KnownClips, load_clips
 from game.embos.mixing import RADIUS, mix_weights
 from game.embos.transitions import pose_distances
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
@@ -63,11 +63,12 @@ class UnitLibrary:
         return len(self.units)
 
     @classmethod
-    def load(cls, path: Path) -> UnitLibrary:
-        """units.yaml and, where it stands beside it, clips.npz. Raises BadInput with place, expected and seen."""
+    def load(cls, path: Path, known: KnownClips | None = None) -> UnitLibrary:
+        """units.yaml and, where it stands beside it, clips.npz; known: takes of an earlier reading. Raises BadInput
+        with place, expected and seen."""
         units, transitions = read_units(path)
         clips_path = path.parent / "clips.npz"
-        clips = load_clips(clips_path) if clips_path.exists() else ClipBank()
+        clips = load_clips(clips_path, known) if clips_path.exists() else ClipBank()
         library = cls(units, clips, transitions)
         library.check_clips(path)
         return library

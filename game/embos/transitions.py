@@ -62,8 +62,9 @@ def pose_distances(units: Sequence[MotionUnit], clips: Mapping[str, TakeClip]) -
     member = np.zeros((count, len(owner)))
     member[owner, np.arange(len(owner))] = 1.0
     total = np.zeros((len(owner), len(owner)))
+    ends, starts = np.array(last, dtype=np.float64), np.array(first, dtype=np.float64)
     for joint in range(len(_MAJOR)):  # a joint at a time keeps the memory at variants²
-        dot = np.abs(np.array(last, dtype=np.float64)[:, joint] @ np.array(first, dtype=np.float64)[:, joint].T)
+        dot = np.abs(ends[:, joint] @ starts[:, joint].T)
         total += 2.0 * np.arccos(np.minimum(dot, 1.0))
     total /= len(_MAJOR)
     same = (np.array(emotion)[:, None] == np.array(emotion)[None, :]).astype(np.float64)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from game.animation import Performer
 from game.app.loading import load_step_assets
 from game.app.passersby import Passersby, load_cast
 from game.app.stage import load_stage
 from game.app.step import new_world
 from game.app.strolls import LAP_S, Strolls
 from game.core import MissingPart
+from game.embos import Planner, UnitLibrary
 from game.render import Device, FrameView, Renderer, level_named
 
 
@@ -55,6 +58,23 @@ def test_nobody_jumps_where_they_can_be_seen() -> None:
         turned = np.abs((np.diff([p.yaw_rad for p in places]) + np.pi) % (2 * np.pi) - np.pi)
         assert turned[seen].max() < 0.15, "radians a tick"
         assert (speed == 0.0).any(), "they stop to browse"
+
+
+def test_other_units_are_taken_up_from_where_everybody_stands(assets, cast) -> None:
+    one = crowd(assets, cast, seconds=1.0)
+    other = copy(one)
+    world = replace(new_world(assets, 1), tick=30)
+    units = [u for u in assets.planner.library.units if u.layer != "posture" or u.name == "upright"]
+    library = UnitLibrary(units, assets.planner.library.clips)
+    other.take_up(Planner(library, assets.planner.config), Performer(library))
+    apart = []
+    for tick in range(20):
+        now = replace(world, tick=30 + tick)
+        one.tick(now)
+        other.tick(now)
+        apart.append(max(float(np.abs(a - b).max()) for a, b in zip(one._after[0], other._after[0], strict=True)))
+    assert apart[0] < 0.05, "nobody jumps"
+    assert apart[-1] > 0.2, "but they move by other units"
 
 
 def test_the_same_seed_moves_the_same_crowd(assets, cast) -> None:
