@@ -1,15 +1,18 @@
-"""The skin as a part of the expression: blush, flush, pallor, gloom, and the drawn signs (tear, sweat drop, vein)."""
+"""The skin as a part of the expression: blush, flush, glow, pallor, gloom, rings under the eyes, and the drawn signs
+(tear, sweat drop, vein, z z z, a sigh's puff)."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from game.face._eyes import Lids
+from game.face._mouth import Lips
 from game.face.mesh import Sheet, bezier, ink, polar, ribbons
 from game.face.params import INDEX, FaceParams
 from game.face.style import FaceStyle
 
-__all__ = ["complexion", "drops", "signs"]
+__all__ = ["bags", "complexion", "drops", "puff", "signs"]
 
 Floats = NDArray[np.float64]
 Oval = tuple[float, float, float, float]  # x, y, rx, ry in mm
@@ -39,6 +42,16 @@ _VEIN_TURN = np.radians(12.0 + 90.0 * np.arange(4))
 _VEIN_SPIN = np.array([[(np.cos(a), np.sin(a)), (-np.sin(a), np.cos(a))] for a in _VEIN_TURN])
 _VEIN_ARMS = bezier(((4.0, 18.0), (4.2, 8.4), (8.6, 4.2), (18.0, 4.0)), 14) @ _VEIN_SPIN
 _VEIN_WIDTH = 0.55 + 0.45 * np.sin(np.linspace(0.0, np.pi, 14))
+
+_RING = bezier(((-19.0, 1.0), (-9.0, -7.0), (12.0, -7.0), (25.0, 2.0)), 12)  # from the lowest point of the lower lid
+_RING_WIDTH = 0.8 + 2.6 * np.sin(np.linspace(0.0, np.pi, 12))
+_LETTER_Z = np.array([((-1.0, 1.0), (1.0, 1.0)), ((1.0, 1.0), (-1.0, -1.0)), ((-1.0, -1.0), (1.0, -1.0))])
+_LETTER_Z = _LETTER_Z * (0.8, 1.0) @ np.array([[0.98, 0.2], [-0.2, 0.98]])
+_LETTER_PATHS = _LETTER_Z[:, :1] + (_LETTER_Z[:, 1:] - _LETTER_Z[:, :1]) * np.linspace(0.0, 1.0, 6)[:, None]
+_SNOOZE = ((34.0, 56.0, 8.5), (60.0, 74.0, 11.0), (93.0, 95.0, 14.0))  # x, y, half size of each letter
+_CLOUD_ANGLE = np.linspace(0.0, 2.0 * np.pi, 41)
+_CLOUD_EDGE = 0.80 + 0.20 * np.abs(np.sin(2.5 * _CLOUD_ANGLE + 0.4))
+_CLOUD = polar((0.0, 1.0), 40) * _CLOUD_EDGE[None, :, None] * (1.25, 1.0)
 
 
 def _ovals(sheet: Sheet, shapes: tuple[Oval, ...], code: str, alpha: float) -> None:
@@ -83,6 +96,9 @@ def complexion(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
     _veil(sheet, red, "#E84A38", (138.0, 0.55), (70.0, 0.42), (10.0, 0.18), (-40.0, 0.0))
     _ovals(sheet, _cheeks(86.0, -82.0, 50.0, 34.0), "#F26A4B", 0.60 * style.ruddy)
     _ovals(sheet, ((0.0, -74.0 + style.nose_y, 27.0, 19.0),), "#F0603F", 0.62 * style.ruddy)
+    warm = float(params[INDEX["warm"]])
+    _ovals(sheet, ((0.0, -92.0, 140.0, 74.0),), "#FFA85C", 0.30 * warm)
+    _ovals(sheet, _cheeks(82.0, -84.0, 60.0, 40.0), "#FF8A5A", 0.52 * warm)
     _ovals(sheet, _cheeks(90.0, -80.0, 43.0, 27.0), "#FF6257", 0.66 * min(blush, 1.0))
     _ovals(sheet, ((0.0, -74.0, 120.0, 30.0),), "#FF6257", 0.75 * (blush - 1.0))  # a deep blush crosses the nose
 
@@ -99,6 +115,35 @@ def complexion(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
         low = np.empty((len(_BAGS_X), 8, 2))
         low[..., 0], low[..., 1] = _BAGS_X, -86.0 - grow * _BAGS
         ribbons(sheet, low, 3.2 - 2.4 * _UNIT8, np.tile(colour, (len(low), 1)))
+
+
+def bags(sheet: Sheet, params: FaceParams, lid: Lids, style: FaceStyle) -> None:
+    """Dark rings that hang from the lower lids, wherever those are."""
+    amount = float(params[INDEX["bags"]])
+    if amount <= 1e-3:
+        return
+    scale = style.eye_scale * np.array([1.0, style.eye_height])
+    low = lid.lower.min(axis=1) - 6.0
+    for side, y in zip(_CHEEKS, low.tolist(), strict=True):
+        middle = np.array([style.eye_x, style.eye_y]) + np.array([2.0, y]) * scale
+        _ovals(sheet, ((side * middle[0], middle[1] - 4.0, 34.0, 13.0),), "#7A5A86", 0.46 * amount)
+        ring = ((_RING * scale) + middle) * (side, 1.0)
+        ribbons(sheet, ring[None], _RING_WIDTH, ink("#8A5A72")[None] * (0.72 * amount))
+
+
+def puff(sheet: Sheet, params: FaceParams, lip: Lips) -> None:
+    """A small cloud of breath that leaves the mouth to the character's left."""
+    amount = float(params[INDEX["sigh"]])
+    if amount <= 1e-3:
+        return
+    size = 17.0 * (0.4 + 0.6 * amount)
+    corner = np.array([lip.x[-1], lip.lower.min()])
+    body = corner + (24.0 + 8.0 * amount, -8.0 * amount) + _CLOUD[None] * size
+    colour = np.empty((*body.shape[:3], 4))
+    colour[...] = ink("#FFFDF8") * (0.92 * min(2.0 * amount, 1.0))
+    sheet.grid(body, colour, late=True)
+    edge = ink("#8FA6C4")[None] * (0.9 * min(2.0 * amount, 1.0))
+    ribbons(sheet, body[:, -1], 2.2, edge, late=True)
 
 
 def _water_drop(sheet: Sheet, place: tuple[float, float], size: float, alpha: float, fill: str, over: bool) -> None:
@@ -148,7 +193,7 @@ def drops(sheet: Sheet, params: FaceParams, style: FaceStyle) -> None:
 
 
 def signs(sheet: Sheet, params: FaceParams) -> None:
-    """Sweat drop and vein: drawn over the hair too, so a fringe never hides them."""
+    """Sweat drop, vein and z z z: drawn over the hair too, so a fringe never hides them."""
     vein, sweat = float(params[INDEX["vein"]]), float(params[INDEX["sweat"]])
     if vein > 0.1:
         shown = min((vein - 0.1) * 2.5, 1.0)
@@ -157,6 +202,14 @@ def signs(sheet: Sheet, params: FaceParams) -> None:
         for code, width in (("#FFF3E0", 12.0), ("#F0242A", 6.4)):
             colour = np.tile(ink(code) * shown, (4, 1))
             ribbons(sheet, arms, (width * size) * _VEIN_WIDTH, colour, late=True, over=True)
+    snooze = float(params[INDEX["snooze"]])
+    for i, (x, y, half) in enumerate(_SNOOZE):
+        shown = min(max(3.0 * snooze - i, 0.0), 1.0)  # one letter after the other
+        if shown > 1e-3:
+            size = half * (0.55 + 0.45 * shown)
+            letter = _LETTER_PATHS * size + (x, y)
+            for code, width in (("#FFF6E6", 0.84), ("#4F6FB4", 0.4)):
+                ribbons(sheet, letter, width * size, np.tile(ink(code) * shown, (3, 1)), late=True, over=True)
     if sweat > 1e-3:
         place = (104.0, 26.0 - 14.0 * sweat)
         _water_drop(sheet, place, 13.5 * (0.45 + 0.55 * sweat), min(sweat * 2.0, 1.0), "#A6E2FA", True)

@@ -8,7 +8,7 @@ from game.core.errors import BadInput
 from game.face._age import age_lines
 from game.face._brows import brows, furrows, nose
 from game.face._eyes import eyeballs, lashes, lids
-from game.face._marks import complexion, drops, signs
+from game.face._marks import bags, complexion, drops, puff, signs
 from game.face._mouth import lips, mouth
 from game.face.mesh import DrawList, Sheet
 from game.face.params import FIELDS, INDEX, FaceParams, clamp
@@ -37,10 +37,13 @@ def tessellate(params: FaceParams, style: FaceStyle = DEFAULT_STYLE) -> DrawList
     age_lines(sheet, values, style)
     nose(sheet, values, style)
     furrows(sheet, values, style)
+    bags(sheet, values, lid, style)
     eyeballs(sheet, values, lid, style)
-    mouth(sheet, values, lips(values, style), style)
+    lip = lips(values, style)
+    mouth(sheet, values, lip, style)
     lashes(sheet, values, lid, style)
     brows(sheet, values, style)
     drops(sheet, values, style)
+    puff(sheet, values, lip)
     signs(sheet, values)
     return sheet.draw_list()

@@ -48,16 +48,11 @@ class FaceSearch:
         determinant = a * d - b * b
         if not (determinant > 0.0).all():
             raise BadInput("face model", expected="positive definite covariances", seen=float(determinant.min()))
-        # Inverse covariance (F, 3) as its entries 00, 01, 11.
-        self.precision = np.stack([d, -b, a], axis=-1) / determinant[:, None]
-        self.log_determinant = np.log(determinant)
-        together = np.zeros((*self.counts, 7))
-        for axis, region in enumerate(model.parts.regions):
-            together = together + region.affinity.reshape(*(-1 if i == axis else 1 for i in range(len(self.counts))), 7)
-        # How far the parts of a face say one and the same emotion (F,), 0..1: on the two axes alone a vein and a smile
-        # may cancel out to a fitting point. Add a multiple of it to a score where faces should make sense.
-        self.coherence = np.asarray((together / len(self.counts)).max(axis=-1).reshape(-1))
-        for array in (self.mean, self.covariance, self.precision, self.log_determinant, self.coherence):
+        # log p of (v, a) is quadratic in it: (6, F) factors of 1, v, a, v², v·a, a², so that a query is one product.
+        x, y, p, q, r = *self.mean.T, d / determinant, -b / determinant, a / determinant
+        constant = -0.5 * (p * x * x + 2.0 * q * x * y + r * y * y + np.log(determinant)) - np.log(2.0 * np.pi)
+        self._quadratic = np.stack([constant, p * x + q * y, q * x + r * y, -0.5 * p, -q, -0.5 * r])
+        for array in (self.mean, self.covariance, self._quadratic):
             array.setflags(write=False)
 
     def __len__(self) -> int:
@@ -74,10 +69,7 @@ class FaceSearch:
     def score_point(self, point: ArrayLike) -> Floats:
         """log-density (F,) of (valence, arousal) under every face."""
         v, a = np.asarray(point, dtype=np.float64)
-        x, y = v - self.mean[:, 0], a - self.mean[:, 1]
-        p = self.precision
-        distance = p[:, 0] * x * x + 2.0 * p[:, 1] * x * y + p[:, 2] * y * y
-        return np.asarray(-0.5 * distance - 0.5 * self.log_determinant - np.log(2.0 * np.pi))
+        return np.asarray(np.array([1.0, v, a, v * v, v * a, a * a]) @ self._quadratic)
 
     def score_gaussian(self, mean: ArrayLike, covariance: ArrayLike) -> Floats:
         """−KL(wanted ‖ face) (F,) of a wanted Gaussian. Raises BadInput where it is not positive definite."""
@@ -85,10 +77,11 @@ class FaceSearch:
         determinant = float(np.linalg.det(wanted)) if wanted.shape == (2, 2) else -1.0
         if determinant <= 0.0 or wanted[0, 0] <= 0.0:
             raise BadInput("wanted covariance", expected="a positive definite 2×2 matrix", seen=wanted.tolist())
-        p = self.precision
-        trace = p[:, 0] * wanted[0, 0] + 2.0 * p[:, 1] * wanted[0, 1] + p[:, 2] * wanted[1, 1]
-        density = self.score_point(mean) + np.log(2.0 * np.pi)
-        return np.asarray(density - 0.5 * trace + 1.0 + 0.5 * np.log(determinant))
+        v, a = np.asarray(mean, dtype=np.float64)
+        (s, c), (_, u) = wanted
+        # The trace term of the divergence has the same factors as the squares of the point.
+        score = np.array([1.0, v, a, v * v + s, v * a + c, a * a + u]) @ self._quadratic
+        return np.asarray(score + (np.log(2.0 * np.pi) + 1.0 + 0.5 * np.log(determinant)))
 
     def score_emotion(self, emotion: ArrayLike) -> Floats:
         """Score (F,) of a seven-value emotion: log-density of its place plus weighted mean affinity of the parts."""

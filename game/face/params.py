@@ -75,6 +75,7 @@ FIELDS: tuple[Field, ...] = (
     Field("tongue", "mouth", 0.0, 1.0, 0.0, "tongue inside the mouth"),
     Field("tongue_out", "mouth", 0.0, 1.0, 0.0, "tongue hanging out"),
     Field("sneer", "mouth", 0.0, 1.0, 0.0, "wrinkled nose and the fold beside it"),
+    Field("sigh", "mouth", 0.0, 1.0, 0.0, "a puff of breath beside the mouth"),
     Field("blush", "skin", 0.0, 1.6, 0.25, "soft red on the cheeks"),
     Field("blush_lines", "skin", 0.0, 1.0, 0.0, "short strokes on the cheeks"),
     Field("red", "skin", 0.0, 1.0, 0.0, "the whole face flushed"),
@@ -86,6 +87,9 @@ FIELDS: tuple[Field, ...] = (
     Field("tear_stream", "skin", 0.0, 1.0, 0.0, "tears running down the cheeks"),
     Field("sweat", "skin", 0.0, 1.0, 0.0, "drop at the temple, over the hair"),
     Field("vein", "skin", 0.0, 1.0, 0.0, "cross of anger, over the hair"),
+    Field("warm", "skin", 0.0, 1.0, 0.0, "wide peach glow, as after a bath"),
+    Field("bags", "skin", 0.0, 1.0, 0.0, "dark rings under the eyes"),
+    Field("snooze", "skin", 0.0, 1.0, 0.0, "z z z beside the head, over the hair"),
 )  # fmt: skip
 
 INDEX: Mapping[str, int] = MappingProxyType({field.name: i for i, field in enumerate(FIELDS)})

@@ -36,20 +36,23 @@ def _sound(drawing: DrawList) -> None:
 
 
 def test_every_two_parts_of_a_region_interpolate_without_inversion(asset):
-    parts = asset.model.parts
-    for region in parts.regions:
+    for region in asset.model.parts.regions:
         for one, two in combinations(range(len(region.names)), 2):
             for t in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
                 params = (1.0 - t) * region.shape[one] + t * region.shape[two]
-                lid, lip = lids(params), lips(params, DEFAULT_STYLE)
                 where = (region.name, region.names[one], region.names[two], t)
-                assert (np.diff(lid.x, axis=1) > 0.0).all(), where
-                assert (lid.upper >= lid.lower).all(), where
-                assert np.abs(lid.upper).max() < 70.0, where
-                assert (np.diff(lip.x) > 0.0).all(), where
-                assert (lip.upper >= lip.lower).all(), where
-                assert lip.lower.min() > -170.0, where
-                assert (np.diff(brow_lines(params, DEFAULT_STYLE)[0, :, 0]) > 0.0).all(), where
+                if region.name == "eyes":
+                    lid = lids(params)
+                    assert (np.diff(lid.x, axis=1) > 0.0).all(), where
+                    assert (lid.upper >= lid.lower).all(), where
+                    assert np.abs(lid.upper).max() < 70.0, where
+                elif region.name == "mouth":
+                    lip = lips(params, DEFAULT_STYLE)
+                    assert (np.diff(lip.x) > 0.0).all(), where
+                    assert (lip.upper >= lip.lower).all(), where
+                    assert lip.lower.min() > -170.0, where
+                elif region.name == "eyebrows":
+                    assert (np.diff(brow_lines(params, DEFAULT_STYLE)[0, :, 0]) > 0.0).all(), where
                 if t in (0.2, 0.6):
                     _sound(tessellate(params))
 

@@ -110,15 +110,3 @@ def test_wrong_emotions_are_refused(asset):
     for wrong in (np.zeros(6), np.full(7, np.nan), -np.ones(7)):
         with pytest.raises(BadInput, match="seven numbers"):
             asset.search.score_emotion(wrong)
-
-
-def test_coherence_keeps_contradicting_parts_apart(asset):
-    """High arousal, no valence: two axes alone accept anger's colour with a smile; a coherent face is surprised."""
-    search = asset.search
-    assert search.coherence.min() >= 0.0
-    assert search.coherence.max() <= 1.0
-    mixed = search.index(asset.model.parts.numbers(Face("wide", "standard", "smile", "anger_red")))
-    clear = search.index(asset.model.parts.numbers(Face("wide", "raised", "gasp", "standard")))
-    assert search.coherence[clear] > search.coherence[mixed] + 0.3
-    best = search.propose(search.score_point((0.05, 0.7)) + 5.0 * search.coherence, 3)
-    assert all(p.face.eyebrows == "raised" for p in best)

@@ -18,11 +18,11 @@ Floats = NDArray[np.float64]
 COHERENCE = 6.0
 """How much score a face gains whose parts all say one and the same emotion. On two axes alone a vein and a smile
 cancel out to a fitting point; nobody would draw that. 0 leaves the paper's model by itself."""
-DIVERSITY = 4.0
+DIVERSITY = 2.5
 """Score lost by a face that shares all its parts with those already proposed."""
-_CLEAR = 0.3
-"""A part of this affinity to an emotion does not contradict it."""
-_FAR = 1.5
+_CLEAR, _FULL = 0.3, 0.6
+"""A part of the lower affinity to an emotion does not contradict it, of the higher says it outright."""
+_FAR = 1.0
 """Sense and variety may cost a face this much log-density against the best; beyond it, they cost twice."""
 
 
@@ -67,13 +67,22 @@ class Proposer:
     def __init__(self, search: FaceSearch) -> None:
         self.search = search
         regions = search.model.parts.regions
-        weakest = np.ones((*search.counts, len(EMOTIONS) - 1))
+        told = np.zeros((*search.counts, len(EMOTIONS) - 1))
+        weakest = np.ones_like(told)
+        lively, calm = np.zeros(search.counts), np.zeros(search.counts)
         for axis, region in enumerate(regions):
-            fits = np.minimum(region.affinity[:, :-1], _CLEAR) / _CLEAR
+            along = tuple(-1 if i == axis else 1 for i in range(len(regions)))
+            affinity = region.affinity[:, :-1]
+            told = told + np.minimum(affinity / _FULL, 1.0).reshape(*along, 6) / len(regions)
+            fits = np.minimum(affinity / _CLEAR, 1.0)
             fits[0] = 1.0  # the standard part goes with everything
-            weakest = np.minimum(weakest, fits.reshape(*(-1 if i == axis else 1 for i in range(len(regions))), 6))
-        # (F,) in 0..1: mean affinity to the emotion the parts say together, and whether any part contradicts it.
-        self._sense = 0.5 * search.coherence + 0.5 * weakest.max(axis=-1).reshape(-1)
+            weakest = np.minimum(weakest, fits.reshape(*along, 6))
+            lively = np.maximum(lively, region.mean[:, 1].reshape(along))
+            calm = np.maximum(calm, -region.mean[:, 1].reshape(along))
+        # (F,) at most 1: how far the parts say one and the same emotion, whether any of them contradicts it, and
+        # whether one is wide awake and another half asleep: a roar of laughter under drowsy lids is no calm joy.
+        self.sense = (0.5 * told + 0.5 * weakest).max(axis=-1).reshape(-1)
+        self.sense -= 0.5 * np.minimum(lively, calm).reshape(-1)
 
     def score(self, wanted: Wanted, coherence: float = COHERENCE) -> Floats:
         """Score of every face (F,), higher is better; ``coherence`` 0 is the model by itself."""
@@ -86,7 +95,7 @@ class Proposer:
         if coherence == 0.0:
             return score
         short = np.maximum(score.max() - _FAR - score, 0.0)
-        return np.asarray(score - short + 2.0 * coherence * self._sense)
+        return np.asarray(score - short + 2.0 * coherence * self.sense)
 
     def find(
         self,
