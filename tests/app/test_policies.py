@@ -14,6 +14,7 @@ from game.app.autoplay.episodes import sit_down
 from game.app.content import load_talk_assets, stall_path
 from game.app.loading import load_planner
 from game.app.policies import (
+    COMPARED,
     NAMES,
     Acquaintance,
     Belief,
@@ -276,3 +277,20 @@ def test_moves_that_are_not_on_the_table_are_refused_whoever_makes_them(assets) 
         choose(assets, talk.state, Choice("nothing_like_it"))
     assert set(NAMES) >= {"random", "fixed", "words", "face", "body", "reader", "oracle"}
     assert random.Random("talk 1 0").random() == random.Random("talk 1 0").random()
+
+
+def test_the_explorer_comes_where_good_players_seldom_come(assets) -> None:
+    def odd(name: str) -> tuple[int, int]:
+        """Talks in which one kind of line was said three times or more; lines that landed wrong."""
+        place, stubborn, wrong = seat(assets, name), 0, 0
+        for episode in range(60):
+            records = [dict(d.after.record) for d in play_episode(place, 4, episode)]
+            acts = [r["act"] for r in records if r["act"] not in {"wait", "offer"}]
+            stubborn += any(acts.count(act) >= 3 for act in acts)
+            wrong += sum(r["quality"] == "wrong" for r in records)
+        return stubborn, wrong
+
+    (stubborn, wrong), (seldom, never) = odd("explorer"), odd("oracle")
+    assert stubborn > 5 + seldom
+    assert wrong > 20 + never
+    assert "explorer" not in COMPARED, "it plays to come everywhere, not to win"

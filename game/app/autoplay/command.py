@@ -7,13 +7,15 @@ examples:
   run_game.py autoplay --policy my_policy.py --episodes 200      an own policy, see docs/autoplay.md
   run_game.py autoplay --episodes 1000000 --out log.jsonl.gz --workers auto --resume
   run_game.py autoplay --stall toys --visits 4 --episodes 300    come back three times each afternoon
+  run_game.py autoplay --stall all --policy explorer:4,oracle:2 --visits 4 --episodes 600 --report r.html    coverage
   run_game.py autoplay --dask tcp://scheduler:8786 --episodes 100000
   run_game.py autoplay --stall all --policy all --require coverage.yaml --junit autoplay.xml
   run_game.py autoplay --search fixed --stall flea --candidates 200
 
-Policies: random fixed words face body reader oracle, script:FILE, FILE.py, or a mixture of them with shares. Each sees
-only what its name allows; body and reader look at what the body planner really displays. One JSON line per decision
-goes to the log; one seed gives the same bytes and figures, however many workers play. Ctrl-C stops with what is done.
+Policies: random fixed words face body reader oracle (all: these seven), explorer (another temper in every talk: comes
+everywhere), script:FILE, FILE.py, or a mixture of them with shares. Each sees only what its name allows; body and reader
+look at what the body planner really displays. One JSON line per decision goes to the log; one seed gives the same bytes
+and figures, however many workers play. Ctrl-C stops with what is done.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from game.app.autoplay.executors import Crew, workers_of
 from game.app.autoplay.progress import Progress
 from game.app.autoplay.runs import Plan, Run, play
 from game.app.content import stall_path
-from game.app.policies import NAMES, mixture_of, seat_exists
+from game.app.policies import COMPARED, mixture_of, seat_exists
 from game.core.errors import BadInput
 from game.story import shipped_stalls
 
@@ -84,7 +86,7 @@ def _stalls(names: list[str]) -> tuple[str, ...]:
 def _populations(words: list[str]) -> tuple[str, ...]:
     found: list[str] = []
     for word in words:
-        found += list(NAMES) if word == "all" else [str(mixture_of(word))]
+        found += list(COMPARED) if word == "all" else [str(mixture_of(word))]
     for population in found:
         for name, _ in mixture_of(population).shares:
             seat_exists(name)

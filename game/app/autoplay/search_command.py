@@ -16,7 +16,7 @@ from game.app.autoplay.progress import Progress
 from game.app.autoplay.search import CHECK_SEED, TRAIN_SEED, Found, search, sign_bank
 from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
-from game.app.policies import NAMES, TUNED, FixedPlan, load_tuned
+from game.app.policies import COMPARED, TUNED, FixedPlan, load_tuned
 from game.core.errors import BadInput
 from game.formats.yaml_source import nearest
 
@@ -32,7 +32,7 @@ _HEAD = """\
 
 def run_search(args: argparse.Namespace, stalls: tuple[str, ...]) -> int:
     """Search for one policy at each stall, print what is found, and keep it where ``--save`` says so."""
-    searchable = [name for name in NAMES if name != "random"]
+    searchable = [name for name in COMPARED if name != "random"]
     if args.search not in searchable:
         raise BadInput(
             "--search", expected=" | ".join(searchable), seen=args.search, hint=nearest(args.search, searchable)

@@ -4,7 +4,18 @@ from game.app.policies.beliefs import Acquaintance, Belief, BodyReading, FaceRea
 from game.app.policies.custom import OwnPolicy
 from game.app.policies.eyes import Eyes, FaceEye
 from game.app.policies.players import Player
-from game.app.policies.registry import NAMES, TUNED, Mixture, Seat, Tuned, load_tuned, mixture_of, seat, seat_exists
+from game.app.policies.registry import (
+    COMPARED,
+    NAMES,
+    TUNED,
+    Mixture,
+    Seat,
+    Tuned,
+    load_tuned,
+    mixture_of,
+    seat,
+    seat_exists,
+)
 from game.app.policies.scripted import load_moves
 from game.app.policies.strategy import FixedPlan, Strategy, money
 from game.app.policies.views import (
@@ -20,6 +31,7 @@ from game.app.policies.views import (
 )
 
 __all__ = [
+    "COMPARED",
     "NAMES",
     "TUNED",
     "Acquaintance",

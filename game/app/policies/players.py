@@ -1,4 +1,4 @@
-"""The players behind the names: random, fixed, words, face, body, reader, oracle. Each decides from its view alone."""
+"""The players behind the names: random, explorer, fixed, words, face, body, reader, oracle. Each decides from its view alone."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from game.app.policies.views import BodyView, FaceView, Line, OracleView, Reader
 from game.app.talk import Choice
 from game.core.emotion_space import EMOTIONS
 from game.market import MarketRules
+from game.story import ACTS
 
 __all__ = [
     "BodyPlayer",
+    "ExplorerPlayer",
     "FacePlayer",
     "FixedPlayer",
     "OraclePlayer",
@@ -50,6 +52,46 @@ class RandomPlayer:
         amount = money(rng.uniform(min(low, view.ask), view.ask), min(view.ask, view.purse))
         with_offer = line.act == "offer" or (line.act != "wait" and rng.random() < 0.6)
         return Choice(line.id, amount if with_offer else None)
+
+
+@dataclass
+class ExplorerPlayer:
+    """A tester with another temper in every talk: one kind of line it likes, one way with money.
+
+    What good players seldom do (a joke that lands wrong, a bargain after an insult) comes about in the same talks.
+    """
+
+    rng: random.Random
+    liked: str = field(init=False)
+    opens: float = field(init=False)
+    step: float = field(init=False)
+    often: float = field(init=False)
+    closes: bool = field(init=False)
+
+    LIKING = 0.6
+    """How often it says a line of the kind it likes where there is one."""
+
+    def __post_init__(self) -> None:
+        rng = self.rng
+        self.liked = ACTS[int(rng.random() * len(ACTS))]
+        # From one who haggles from the bottom, and says prices seldom or always, to one who pays what the card says.
+        self.opens, self.step = rng.uniform(0.25, 1.0), rng.uniform(0.0, 0.12)
+        self.often = (0.15, 0.5, 1.0)[int(rng.random() * 3)]
+        self.closes = rng.random() < 0.5
+
+    def move(self, view: Table) -> Choice:
+        """The next move."""
+        rng = self.rng
+        lines = [line for line in view.lines if line.act != "leave"]
+        liked = [line for line in lines if line.act == self.liked]
+        if liked and rng.random() < self.LIKING:
+            lines = liked
+        line = lines[int(rng.random() * len(lines))]
+        wanted = view.offer + self.step * view.list_price if view.offer else self.opens * view.list_price
+        if self.closes and view.rounds - view.round <= 2 and line.act != "wait":
+            return Choice(line.id, min(view.ask, view.purse))
+        with_offer = line.act == "offer" or (line.act != "wait" and rng.random() < self.often)
+        return Choice(line.id, money(wanted, min(view.ask, view.purse)) if with_offer else None)
 
 
 @dataclass

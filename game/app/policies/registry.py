@@ -13,6 +13,7 @@ from game.app.policies.custom import OwnPolicy
 from game.app.policies.eyes import Eyes
 from game.app.policies.players import (
     BodyPlayer,
+    ExplorerPlayer,
     FacePlayer,
     FixedPlayer,
     OraclePlayer,
@@ -30,7 +31,7 @@ from game.core.paths import ASSETS
 from game.embos import UnitLibrary
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["NAMES", "TUNED", "Mixture", "Seat", "Tuned", "load_tuned", "mixture_of", "seat", "seat_exists"]
+__all__ = ["COMPARED", "NAMES", "TUNED", "Mixture", "Seat", "Tuned", "load_tuned", "mixture_of", "seat", "seat_exists"]
 
 NAMES: Mapping[str, str] = {
     "random": "table",
@@ -40,8 +41,11 @@ NAMES: Mapping[str, str] = {
     "body": "body",
     "reader": "reader",
     "oracle": "oracle",
+    "explorer": "table",
 }
 """What each policy sees (``game.app.policies.views``)."""
+COMPARED = tuple(name for name in NAMES if name != "explorer")
+"""Those whose figures are set against each other; the explorer plays to come everywhere, not to win."""
 TUNED = ASSETS / "autoplay" / "strategies.yaml"
 _BELIEVERS: Mapping[str, type[WordsPlayer | FacePlayer | BodyPlayer | ReaderPlayer | OraclePlayer]] = {
     "words": WordsPlayer,
@@ -140,8 +144,8 @@ def seat(
         own = OwnPolicy.load(Path(name))
         return Seat(name, own.sees, assets, own.sit, layers)
     seat_exists(name)
-    if name == "random":
-        return Seat(name, "table", assets, RandomPlayer, layers)
+    if name in {"random", "explorer"}:
+        return Seat(name, "table", assets, RandomPlayer if name == "random" else ExplorerPlayer, layers)
     tuned = tuned or load_tuned()
     if name == "fixed":
         plan = strategy if isinstance(strategy, FixedPlan) else tuned.plan(assets.person.id)
