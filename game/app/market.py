@@ -15,14 +15,14 @@ from game.app.stage import StageAssets, load_stage
 from game.app.step import StepAssets
 from game.app.talk import TalkAssets
 from game.app.wishes import PLAIN_WISH, WishText, load_wishes
-from game.core.errors import BadInput, GameError
+from game.core.errors import BadInput, GameError, Where
 from game.core.paths import ASSETS
 from game.story import Script
 
 if TYPE_CHECKING:
     from game.app.avatar import Avatar
 
-__all__ = ["Market", "Stall", "StallLoader", "has_pictures", "read_stage", "read_stall"]
+__all__ = ["LeftOut", "Market", "Stall", "StallLoader", "has_pictures", "read_stage", "read_stall"]
 
 
 @dataclass
@@ -40,14 +40,39 @@ class Stall:
         return self.assets.talk.script
 
 
+@dataclass(frozen=True)
+class LeftOut:
+    """Why a stall does not open. kind: the key of the interface's text that says it; place: ``file:line:col`` or the
+    file, without folders; detail: one line for whoever mends it."""
+
+    kind: str
+    place: str
+    detail: str
+
+    @staticmethod
+    def of(name: str, error: GameError | OSError) -> LeftOut:
+        """From what reading the stall raised."""
+        where = getattr(error, "where", None)
+        if isinstance(error, NoPictures):
+            return LeftOut("stall_no_pictures", name, str(error))
+        if where is None:
+            return LeftOut("stall_unreadable", Path(getattr(error, "filename", None) or name).name, str(error))
+        kind = "stall_faulty" if Path(where.path).suffix in {".yaml", ".yml"} else "stall_unreadable"
+        return LeftOut(kind, str(Where(Path(where.path).name, where.line, where.col)), str(error))
+
+
+class NoPictures(BadInput):
+    """A stall that could be talked at, but not be seen."""
+
+
 @dataclass
 class Market:
-    """All stalls, in the map's order. ``left_out``: id -> one line that says why a stall does not open. ``avatar``: a
-    foreign one in every shopkeeper's place."""
+    """All stalls, in the map's order. ``left_out``: id -> why a stall does not open. ``avatar``: a foreign one in every
+    shopkeeper's place."""
 
     bazaar: Bazaar
     stalls: dict[str, Stall] = field(default_factory=dict)
-    left_out: dict[str, str] = field(default_factory=dict)
+    left_out: dict[str, LeftOut] = field(default_factory=dict)
     expected: tuple[str, ...] = ()
     wishes: Mapping[tuple[str, str], WishText] = field(default_factory=load_wishes)
     avatar: Avatar | None = None
@@ -91,7 +116,7 @@ def read_stall(name: str, base: StepAssets, *, stand_in: bool = False) -> Stall:
     stall, person = talk.script.stall, talk.script.person.id
     pictured = has_pictures(person, stall)
     if not pictured and not stand_in:
-        raise BadInput(
+        raise NoPictures(
             f"stall {stall}", expected=f"pictures of {person} and {stall} in assets/", seen="not all of them"
         )
     return Stall(stall, replace(base, talk=talk), stand_in=not pictured)
@@ -111,7 +136,7 @@ class _News:
     name: str
     stall: Stall | None = None
     stage: StageAssets | None = None
-    why: str = ""
+    why: LeftOut | None = None
 
 
 class StallLoader:
@@ -132,13 +157,13 @@ class StallLoader:
                 found.append(read_stall(name, self._base))
                 self._ready.put(_News(name, stall=found[-1]))
             except (GameError, OSError) as error:
-                self._ready.put(_News(name, why=str(error)))
+                self._ready.put(_News(name, why=LeftOut.of(name, error)))
         self._scripts_read.set()
         for stall in found:
             try:
                 self._ready.put(_News(stall.id, stage=read_stage(stall, self._market.avatar)))
             except (GameError, OSError) as error:
-                self._ready.put(_News(stall.id, why=str(error)))
+                self._ready.put(_News(stall.id, why=LeftOut.of(stall.id, error)))
 
     def poll(self) -> None:
         """Put into the market what has been read since; to be called by the thread that plays."""
@@ -152,7 +177,7 @@ class StallLoader:
                 market.stalls[news.stall.id] = news.stall
             elif news.stage is not None:
                 market.stalls[news.name].stage = news.stage
-            else:
+            elif news.why is not None:
                 market.stalls.pop(news.name, None)
                 market.left_out[news.name] = news.why
 

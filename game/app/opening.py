@@ -53,7 +53,9 @@ def open_session(args: argparse.Namespace, avatar: Avatar | None = None) -> Sess
         replace(new_world(assets, seed, language=settings.language, text_speed=settings.text_speed), mode=args.mode)
     )
     strings = load_strings(settings.language)
-    session = Session(assets, world, strings, settings, Afternoon(seed=seed), market, message=message or "")
+    session = Session(assets, world, strings, settings, Afternoon(seed=seed), market)
+    if message:
+        session.say(strings("settings_kept", reason=message))
     session.read = load_read(user_folder())
     if args.overlay:
         session.overlays |= {"feelings", "units"}
@@ -78,7 +80,7 @@ def take_up(session: Session) -> None:
             os.replace(path, aside)
         except OSError:
             aside = path
-        session.message = session.strings("save_kept", reason=str(error)[:120])
+        session.say(session.strings("save_kept", reason=str(error)[:120]))
 
 
 def resume_game(session: Session, path: Path) -> None:

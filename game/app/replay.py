@@ -24,7 +24,7 @@ from game.app.arguments import parse_size
 from game.app.bazaar import load_bazaar
 from game.app.content import load_talk_assets, stall_path
 from game.app.loading import load_step_assets
-from game.app.market import Market, Stall, read_stall
+from game.app.market import LeftOut, Market, Stall, read_stall
 from game.app.recording import Divergence, Player, Recording, content_hashes, content_note, read_recording
 from game.app.recording.talks import TalkPlayer, play_talk
 from game.app.reload import watched_files
@@ -82,7 +82,7 @@ def open_replay(
             found = read_stall(name, assets)
             market.stalls[found.id] = found
         except GameError as error:
-            market.left_out[name] = str(error)
+            market.left_out[name] = LeftOut.of(name, error)
     world = new_world(assets, header.seed, language=header.language, text_speed=header.text_speed)
     spoken = language or header.language
     session = Session(

@@ -25,6 +25,7 @@ from game.app.afternoon import (
 from game.app.input import COMMANDS, Action, command_of
 from game.app.journal import Journal
 from game.app.market import Market, StallLoader
+from game.app.notices import Notices
 from game.app.reading import ReadLines
 from game.app.saves import SavedGame
 from game.app.settings import Settings, save_settings
@@ -46,9 +47,9 @@ class Session:
     assets: those of the stall one stands at; during a talk, bent by its lesson. loader: reads the other stalls;
     taken_up: whether the game saved last has been looked for. designed: a designer has had a hand in it (a script
     reloaded, a feeling turned, a jump): nothing is saved, booked or scored any more. pointed: the item on the table
-    under the pointer. watch: sees what the body tells in the talk under way. read:
-    lines that have been read before. journal: who follows what is done; ticks: done since the session began, at
-    whatever stall.
+    under the pointer. watch: sees what the body tells in the talk under way. notices: what the game has told in
+    passing. read: lines that have been read before. journal: who follows what is done; ticks: done since the session
+    began, at whatever stall.
     """
 
     assets: StepAssets
@@ -58,7 +59,6 @@ class Session:
     afternoon: Afternoon
     market: Market
     overlays: set[str] = field(default_factory=set)
-    message: str = ""
     running: bool = True
     loader: StallLoader | None = None
     taken_up: bool = False
@@ -66,6 +66,7 @@ class Session:
     designed: bool = False
     read: ReadLines = field(default_factory=ReadLines)
     watch: TellWatch = field(default_factory=TellWatch)
+    notices: Notices = field(default_factory=Notices)
     journal: Journal | None = None
     ticks: int = 0
     _told: int = 0
@@ -74,6 +75,15 @@ class Session:
     def stall(self) -> str:
         """The stall one stands at."""
         return self.assets.talk.script.stall
+
+    @property
+    def message(self) -> str:
+        """What the game tells in passing, as long as it stands."""
+        return self.notices.now(self.ticks)
+
+    def say(self, text: str) -> None:
+        """Tell something in passing; nothing: take away what stands."""
+        self.notices.say(text, self.ticks)
 
     @property
     def minutes(self) -> float:
@@ -211,7 +221,12 @@ def change_setting(session: Session, name: str) -> None:
     if name == "language":
         session.strings = session.strings.switched(settings.language)
         session.world = replace(session.world, language=settings.language)
-    session.message = save_settings(settings) or ""
+    _keep_settings(session)
+
+
+def _keep_settings(session: Session) -> None:
+    failed = save_settings(session.settings)
+    session.say(session.strings("settings_failed", reason=failed) if failed else "")
 
 
 def keep_keys(session: Session, command: str, key: str) -> None:
@@ -225,7 +240,7 @@ def keep_keys(session: Session, command: str, key: str) -> None:
         if other in COMMANDS and other != command:
             keys[other] = old
     session.settings = replace(session.settings, keys={c: k for c, k in keys.items() if c != k})
-    session.message = save_settings(session.settings) or ""
+    _keep_settings(session)
 
 
 def take_back(session: Session) -> bool:

@@ -11,6 +11,7 @@ from game.app.input import Action
 from game.app.market import read_stage
 from game.app.opening import AUTOSAVE, resume_game, take_up
 from game.app.overlays.inspector import Inspector
+from game.app.overlays.notice import draw_notice
 from game.app.overlays.timings import FRAMES_SHOWN, draw_timings
 from game.app.passersby import Known, Passersby, load_cast
 from game.app.photo import PhotoMode, fine_factor, photo_folder, photo_path, smaller
@@ -165,10 +166,10 @@ class Window:
                 saved_game(session),
                 self.renderer.snapshot(replace(self._frame(), hud=None), THUMB_SIZE),
             )
-            session.message = session.strings("saved")
+            session.say(session.strings("saved"))
             self.gallery.drop(f"slot:{slot}")
         except BadInput as error:
-            session.message = str(error)
+            session.say(session.strings("save_failed", reason=str(error)[:160]))
 
     def _quick(self, *, save: bool) -> None:
         session, path = self.session, user_folder() / f"{QUICK}.json"
@@ -177,9 +178,9 @@ class Window:
         elif path.is_file():
             try:
                 resume_game(session, path)
-                session.message = session.strings("loaded")
+                session.say(session.strings("loaded"))
             except BadInput as error:
-                session.message = session.strings("save_kept", reason=str(error)[:120])
+                session.say(session.strings("save_kept", reason=str(error)[:120]))
                 return
             self._follow()
             self._go(TableScreen.where_it_was(session))
@@ -229,7 +230,7 @@ class Window:
             save_game(user_folder() / AUTOSAVE, saved_game(session))
             save_read(session.read, user_folder())
         except BadInput as error:
-            session.message = str(error)
+            session.say(session.strings("save_failed", reason=str(error)[:160]))
 
     def _stage_here(self) -> StageAssets:
         stall = self.session.market.stalls[self.session.stall]
@@ -379,6 +380,7 @@ class Window:
             self.photo.draw(self.session.strings, canvas)
             return
         self.screen.draw(self.session, canvas)
+        draw_notice(self.session, canvas, self.screen.scene)
         self.inspector.draw(self.session, canvas)
         if self.renderer.times.on:
             draw_timings(self.renderer, self.frames_ms, canvas)
@@ -390,7 +392,7 @@ def _speakable(session: Session) -> str:
         try:
             FontSet.for_language("ja")
         except MissingFont as error:
-            session.message = str(error)
+            session.say(str(error))
             session.settings = replace(session.settings, language="en")
             session.strings = session.strings.switched("en")
             session.world = replace(session.world, language="en")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +12,11 @@ from game.app.afternoon import Afternoon, finish_talk, is_closed, next_day, open
 from game.app.bazaar import load_bazaar
 from game.app.content import load_talk_assets
 from game.app.loading import load_step_assets
-from game.app.market import Market, StallLoader
+from game.app.market import LeftOut, Market, StallLoader
+from game.app.strings import load_strings
 from game.app.talk import Choice, ask_money, choose
 from game.app.wishes import load_wishes
-from game.core.errors import BadInput
+from game.core.errors import BadInput, Where
 from tests.app.market_kit import NAMES, copies, three_stalls
 
 BAZAAR = load_bazaar()
@@ -99,8 +101,15 @@ def test_a_stall_with_errors_is_left_out_with_its_reason_and_the_others_play(tmp
     assert "antiques" not in market.stalls
     assert "toys" in set(market.stalls) | {name.rpartition("/")[2].partition(".")[0] for name in market.left_out}
     reason = market.left_out[str(broken)]
-    assert f"{broken.name}:" in reason
-    assert "\n" not in reason
+    assert "\n" not in reason.detail
+    for language, says in (("en", "mistake in its script"), ("ja", "台本に誤り")):
+        words = load_strings(language)(reason.kind, place=reason.place)
+        assert says in words
+        assert re.search(r"antiques\.yaml:\d+:\d+", words), "who can mend it is told where"
+    unseen = LeftOut.of("toys", BadInput("no mesh", where=Where("/x/assets/stalls/toys.glb", pointer="/meshes/0")))
+    assert (unseen.kind, unseen.place) == ("stall_unreadable", "toys.glb")
+    gone = LeftOut.of("toys", FileNotFoundError(2, "No such file", "/x/dialogue/toys.yaml"))
+    assert (gone.kind, gone.place) == ("stall_unreadable", "toys.yaml")
 
 
 def test_every_thing_that_can_be_wished_for_has_its_reason() -> None:

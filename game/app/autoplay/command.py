@@ -13,9 +13,9 @@ examples:
   run_game.py autoplay --search fixed --stall flea --candidates 200
 
 Policies: random fixed words face body reader oracle (all: these seven), explorer (another temper in every talk: comes
-everywhere), script:FILE, FILE.py, or a mixture of them with shares. Each sees only what its name allows; body and reader
-look at what the body planner really displays. One JSON line per decision goes to the log; one seed gives the same bytes
-and figures, however many workers play. Ctrl-C stops with what is done.
+everywhere), script:FILE, FILE.py, or a mixture of them with shares. Each sees only what its name allows; body and
+reader look at what the body planner really displays. One JSON line per decision goes to the log; one seed gives the
+same bytes and figures, however many workers play. Ctrl-C stops with what is done.
 """
 
 from __future__ import annotations

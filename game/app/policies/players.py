@@ -1,4 +1,4 @@
-"""The players behind the names: random, explorer, fixed, words, face, body, reader, oracle. Each decides from its view alone."""
+"""The players behind the policies' names. Each decides from its view alone."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ class Recorder:
         if self._file is None or self._world is None:
             return
         if session.designed:
-            session.message = session.strings("recording_ends")
+            session.say(session.strings("recording_ends"))
             self.close(session, "designed")
             return
         world, before = session.world, self._world

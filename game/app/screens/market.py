@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from game.app.afternoon import is_closed
 from game.app.input import Action
+from game.app.screens.history import HistoryScreen
 from game.app.screens.street import draw_sky, draw_stall, draw_top
 from game.app.session import MenuScreen, Screen, Session
 from game.app.ui import INK, PALETTE, Button, Buttons, Canvas, Rect, fade
@@ -28,6 +29,8 @@ class MarketScreen(MenuScreen):
             from game.app.screens.title import TitleScreen
 
             return TitleScreen()
+        if action.kind == "key" and action.key == "h" and session.notices.told:
+            return HistoryScreen(self)
         pressed = self._buttons.handle(action)
         if pressed == "list":
             from game.app.screens.wish_list import WishListScreen
@@ -65,8 +68,6 @@ class MarketScreen(MenuScreen):
             draw_stall(session, canvas, button, focused=button.id == self._buttons.focus, closed=closed)
         self._buttons.draw(canvas, lambda c, b, f: None if b.id in names else paint_plain(c, b, f))
         self._draw_list(session, canvas, Rect(left, foot, CARD_W * 2 + GAP - 10, 148))
-        if session.message:
-            canvas.text(24, canvas.height - 24, session.message, 14, PALETTE["white"])
         if closed:
             words = s("market_closed")
             width = canvas.measure(words, 20, "bold") + 48

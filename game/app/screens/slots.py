@@ -40,9 +40,9 @@ class SlotsScreen(MenuScreen):
         try:
             resume_game(session, user_folder() / f"{pressed}.json")
         except BadInput as error:
-            session.message = session.strings("save_kept", reason=str(error)[:120])
+            session.say(session.strings("save_kept", reason=str(error)[:120]))
             return None
-        session.message = ""
+        session.say("")
         return TableScreen.where_it_was(session)
 
     def written(self) -> Screen:
@@ -76,8 +76,6 @@ class SlotsScreen(MenuScreen):
         self._buttons.draw(
             canvas, lambda c, b, f: None if b.id in SLOTS else Buttons(b.id if f else "", False, [b]).draw(c)
         )
-        if session.message:
-            canvas.text(24, canvas.height - 28, session.message, 15, PALETTE["white"])
 
     def _draw_slot(self, session: Session, canvas: Canvas, slot: SlotInfo, button: Button) -> None:
         s, place, focused = session.strings, button.rect, button.id == self._buttons.focus

@@ -107,10 +107,11 @@ def _draw_sign(session: Session, canvas: Canvas, sign: Rect, name: str) -> None:
     canvas.panel(sign, hex_colour("FFF3DA"), radius=10, border=2)
     stall = market.stalls.get(name)
     if stall is None:
-        why = market.left_out.get(name, "")
-        title = s("not_open") if why else s("setting_up")
+        why = market.left_out.get(name)
+        title = s("setting_up") if why is None else s("not_open")
         canvas.text(sign.x + 16, sign.y + 10, title, 20, INK, font="title")
-        canvas.paragraph(Rect(sign.x + 16, sign.y + 40, sign.w - 32, 46), why, 13, PALETTE["faint"])
+        words = "" if why is None else s(why.kind, place=why.place)
+        canvas.paragraph(Rect(sign.x + 16, sign.y + 40, sign.w - 32, 48), words, 15, PALETTE["faint"])
         return
     script = stall.script
     canvas.text(sign.x + 16, sign.y + 7, script.title.get(s.language), 23, INK, font="title")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from game.app.afternoon import is_closed
 from game.app.input import Action
+from game.app.screens.history import HistoryScreen
 from game.app.screens.inspect import InspectScreen
 from game.app.session import MenuScreen, Screen, Session
 from game.app.ui import PALETTE, Button, Buttons, Canvas, Rect, fade
@@ -30,6 +31,8 @@ class TableScreen(MenuScreen):
         return MarketScreen() if len(session.market.order) > 1 else TableScreen()
 
     def handle(self, session: Session, action: Action) -> Screen | None:
+        if action.kind == "key" and action.key == "h" and session.notices.told:
+            return HistoryScreen(self)
         items, pointed = session.assets.talk.script.items, session.pointed or ""
         if action.kind == "key" and action.key == "i":
             wanted = pointed or self._buttons.focus
@@ -121,5 +124,3 @@ class TableScreen(MenuScreen):
         self._buttons.lay(buttons)
         self._buttons.draw(canvas)
         self._draw_tag(session, canvas)
-        if session.message:
-            canvas.text(24, canvas.height - 40, session.message, 15, PALETTE["white"])

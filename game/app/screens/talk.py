@@ -82,7 +82,7 @@ class TalkScreen:
             from game.app.screens.title import TitleScreen
 
             return TitleScreen()
-        if action.kind == "key" and action.key == "h" and session.world.backlog:
+        if action.kind == "key" and action.key == "h" and (session.world.backlog or session.notices.told):
             from game.app.screens.history import HistoryScreen
 
             return HistoryScreen(self)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from game.app.input import Action
+from game.app.screens.history import HistoryScreen
 from game.app.screens.keys import KeysScreen
 from game.app.screens.slots import SlotsScreen
 from game.app.session import MenuScreen, Screen, Session, change_setting
@@ -19,6 +20,8 @@ class TitleScreen(MenuScreen):
         self._buttons = Buttons()
 
     def handle(self, session: Session, action: Action) -> Screen | None:
+        if action.kind == "key" and action.key == "h" and session.notices.told:
+            return HistoryScreen(self)
         pressed = self._buttons.handle(action)
         if action.kind == "back":
             session.running = False
@@ -72,8 +75,6 @@ class TitleScreen(MenuScreen):
                 radius=8,
             )
             canvas.text(canvas.width - 24 - wide, canvas.height - 29, line, 12, PALETTE["paper_warm"])
-        if session.message:
-            canvas.text(430, canvas.height - 40, session.message, 15, PALETTE["white"])
 
 
 def first_screen(session: Session) -> Screen:
