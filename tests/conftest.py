@@ -19,6 +19,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--renew-goldens", action="store_true", default=False, help="draw the golden images anew instead of comparing"
     )
+    parser.addoption(
+        "--golden-pages", metavar="DIR", default=None, help="a page for every golden: expected, got, difference"
+    )
 
 
 @pytest.fixture(scope="session")

@@ -18,6 +18,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "autoplay": ("game.app.autoplay.command", "play many games without a window, with a policy, into a log"),
     "replay": ("game.app.replay", "play a recording again, exactly: in a window, without, as a picture or a film"),
     "crawl": ("game.app.crawl", "measure everything a stall can show: texts that run out, glyphs, hands"),
+    "compare": ("game.app.compare", "pictures, film strips or folders of them side by side: do they look the same?"),
     "snapshot": ("game.app.snapshot", "draw one picture without a display"),
     "film": ("game.app.film", "draw a strip or a sequence of pictures without a display"),
     "turntable": ("game.app.turntable", "draw a person from all sides, or their seven faces"),
