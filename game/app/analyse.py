@@ -21,8 +21,8 @@ import numpy as np
 from game.core import ASSETS, EMOTIONS
 from game.core.errors import BadInput, Where
 from game.embos.analysis import annotated_s, shares, transitions, units_of
-from game.embos.annotations import Take, read_takes
-from game.embos.clips import TakeClip, pack_clips, same_clips
+from game.embos.annotations import ReadClip, Take, read_takes
+from game.embos.clips import KnownClips, TakeClip, pack_clips, same_clips
 from game.embos.findings import Findings
 from game.embos.repertoire import Behaviour, read_repertoire
 from game.embos.statistics import ALPHA
@@ -75,11 +75,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def counted(
-    folder: Path, behaviours: Path, findings: Findings, alpha: float = ALPHA
+    folder: Path, behaviours: Path, findings: Findings, alpha: float = ALPHA, read_clip: ReadClip | None = None
 ) -> tuple[list[Take], list[MotionUnit]]:
     """The takes of a folder and their units; what is wrong goes into the findings, and then there are no units."""
     repertoire = read_repertoire(behaviours, findings)
-    takes = read_takes(folder, repertoire, findings)
+    takes = read_takes(folder, repertoire, findings, read_clip)
     if len(findings):
         return takes, []
     units = units_of(takes, repertoire, alpha)
@@ -93,23 +93,28 @@ def _contents(takes: list[Take], units: list[MotionUnit]) -> tuple[str, dict[str
     return units_text(units, transitions(takes)), {take.name: take.clip for take in takes}
 
 
-def _differs(out: Path, text: str, bank: Mapping[str, TakeClip]) -> list[str]:
+def _differs(out: Path, text: str, bank: Mapping[str, TakeClip], known: KnownClips | None = None) -> list[str]:
     clips = out.parent / "clips.npz"
     differs = [str(out)] if not out.exists() or out.read_bytes() != text.encode() else []
-    return differs + ([str(clips)] if not same_clips(clips, bank) else [])
+    return differs + ([str(clips)] if not same_clips(clips, bank, known) else [])
 
 
-def write_units(takes: list[Take], units: list[MotionUnit], out: Path) -> list[str]:
-    """units.yaml at ``out`` and clips.npz beside it, where they differ from what is there -> the files that did."""
+def write_units(takes: list[Take], units: list[MotionUnit], out: Path, known: KnownClips | None = None) -> list[str]:
+    """units.yaml at ``out`` and clips.npz beside it, where they differ from what is there -> the files that did.
+
+    known: the clips file as it was when somebody looked last.
+    """
     text, bank = _contents(takes, units)
     clips = out.parent / "clips.npz"
-    differs = _differs(out, text, bank)
-    if differs:
-        out.parent.mkdir(parents=True, exist_ok=True)
+    differs = _differs(out, text, bank, known)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    if str(clips) in differs:
         temporary = clips.with_name(f".{clips.name}.new")
         temporary.write_bytes(pack_clips(bank))
-        write_text(out, text)
+        # The clips first, the units at once after them: a game that watches both reads them once.
         temporary.replace(clips)
+    if str(out) in differs:
+        write_text(out, text)
     return differs
 
 

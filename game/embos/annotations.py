@@ -6,7 +6,7 @@ Whatever is wrong in a folder of takes is found in one go, each finding with its
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +25,7 @@ from game.embos.units_file import one_of
 from game.formats.bvh import read_bvh
 from game.formats.yaml_source import Node, load_yaml, nearest
 
-__all__ = ["Span", "Take", "check_frames", "read_takes", "reference_clip"]
+__all__ = ["ReadClip", "Span", "Take", "check_fps", "check_frames", "read_takes", "reference_clip"]
 
 _OFFSET_TOLERANCE_M = 0.005
 _LEAST_POSTURE_S = 1.0
@@ -63,8 +63,17 @@ class Take:
         return [span for span in self.spans if span.layer == layer]
 
 
-def read_takes(folder: Path, repertoire: Mapping[str, Behaviour], findings: Findings) -> list[Take]:
-    """All takes of a folder, in order of their names; what is wrong goes into the findings."""
+ReadClip = Callable[[Path, Node | None], TakeClip]
+"""Reads a BVH file's motion; the frame rate its annotation says is checked."""
+
+
+def read_takes(
+    folder: Path, repertoire: Mapping[str, Behaviour], findings: Findings, read_clip: ReadClip | None = None
+) -> list[Take]:
+    """All takes of a folder, in order of their names; what is wrong goes into the findings.
+
+    read_clip: reads a motion (default: reference_clip).
+    """
     paths = sorted(folder.glob("*.yaml")) if folder.is_dir() else []
     # Names that begin with a dot are work in progress: the annotation desk's autosaves.
     paths = [path for path in paths if path.name != "behaviours.yaml" and not path.name.startswith(".")]
@@ -78,7 +87,7 @@ def read_takes(folder: Path, repertoire: Mapping[str, Behaviour], findings: Find
         with findings.collect(reading=True):
             root = load_yaml(path)
             with findings.collect():
-                take = _take(path, root, repertoire, findings, emotions)
+                take = _take(path, root, repertoire, findings, emotions, read_clip or reference_clip)
                 if take is not None:
                     takes.append(take)
     for k, emotion in enumerate(EMOTIONS):
@@ -88,7 +97,12 @@ def read_takes(folder: Path, repertoire: Mapping[str, Behaviour], findings: Find
 
 
 def _take(
-    path: Path, root: Node, repertoire: Mapping[str, Behaviour], findings: Findings, emotions: set[int]
+    path: Path,
+    root: Node,
+    repertoire: Mapping[str, Behaviour],
+    findings: Findings,
+    emotions: set[int],
+    read_clip: ReadClip,
 ) -> Take | None:
     root.only("take", "emotion", "bvh", "author", "version", "fps", "frames", "spans", "spoken", "note", "licence")
     emotion, clip = -1, None
@@ -104,7 +118,7 @@ def _take(
         if Path(bvh).name != bvh or bvh in {"", ".", ".."}:
             raise root["bvh"].error("bvh", expected="a file name in this folder")
         with findings.collect(reading=True):
-            clip = reference_clip(path.parent / bvh, root.get("fps"))
+            clip = read_clip(path.parent / bvh, root.get("fps"))
     spans = _spans(root, repertoire, clip, findings)
     if emotion < 0 or clip is None or not spans:
         return None
@@ -114,8 +128,7 @@ def _take(
 def reference_clip(path: Path, fps: Node | None = None) -> TakeClip:
     """A BVH file's motion on the reference skeleton. fps: what its annotation says, to be checked. Raises BadInput."""
     clip = read_bvh(path).clip
-    if fps and abs(fps.as_float(1.0, 1000.0) * clip.frame_time_s - 1.0) > 1e-3:
-        raise fps.error("fps", expected=f"{1.0 / clip.frame_time_s:.3f} as in {path.name}")
+    check_fps(path, clip.frame_time_s, fps)
     skeleton = clip.skeleton
     missing = [joint for joint in REFERENCE.names if joint not in skeleton.index]
     foreign = [joint for joint in skeleton.names if joint not in REFERENCE.index]
@@ -135,6 +148,12 @@ def reference_clip(path: Path, fps: Node | None = None) -> TakeClip:
         clip.rotation[:, order].astype(np.float32), clip.translation[:, order[root_joint]].astype(np.float32),
         clip.frame_time_s,
     )  # fmt: skip
+
+
+def check_fps(path: Path, frame_time_s: float, fps: Node | None) -> None:
+    """Raises BadInput where an annotation says another frame rate than its motion has."""
+    if fps and abs(fps.as_float(1.0, 1000.0) * frame_time_s - 1.0) > 1e-3:
+        raise fps.error("fps", expected=f"{1.0 / frame_time_s:.3f} as in {path.name}")
 
 
 def _parents(clip: Clip, order: NDArray[np.intp]) -> list[str]:

@@ -102,10 +102,10 @@ def pack_clips(bank: Mapping[str, TakeClip]) -> bytes:
     return buffer.getvalue()
 
 
-def same_clips(path: Path, bank: Mapping[str, TakeClip]) -> bool:
+def same_clips(path: Path, bank: Mapping[str, TakeClip], known: KnownClips | None = None) -> bool:
     """Whether a file holds these takes, to within one step of the packing (compressors and libm may differ)."""
     try:
-        stored = load_clips(path)
+        stored = load_clips(path, known)
     except BadInput:
         return False
     if sorted(stored) != sorted(bank):

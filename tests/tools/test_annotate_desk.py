@@ -13,9 +13,11 @@ from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
 from game.embos.annotations import read_takes
+from game.embos.clip_shelf import ClipShelf
 from game.embos.clips import TakeClip
 from game.embos.findings import Findings
 from game.embos.repertoire import Behaviour, read_repertoire
+from game.formats.yaml_source import parse_yaml
 from game.tools.annotate import edits
 from game.tools.annotate.desk_jobs import learnable
 from game.tools.annotate.desk_repertoire import (
@@ -147,6 +149,23 @@ def test_what_cannot_be_done_is_told_and_changes_nothing(tmp_path, repertoire) -
     desk.undo()
     desk.undo()
     assert desk.message == "nothing to undo"
+
+
+def test_a_motion_is_read_once_whatever_its_file_is_called(tmp_path: Path) -> None:
+    lines = (MOTION / "takes" / "neutral.bvh").read_text().splitlines()
+    motion = lines.index("MOTION")
+    lines = [*lines[: motion + 1], "Frames: 4", *lines[motion + 2 : motion + 7]]
+    (tmp_path / "a.bvh").write_text("\n".join(lines))
+    shutil.copy(tmp_path / "a.bvh", tmp_path / "b.bvh")
+    shelf = ClipShelf()
+    first = shelf.clip(tmp_path / "a.bvh")
+    assert shelf.clip(tmp_path / "b.bvh") is first
+    with pytest.raises(BadInput, match=r"x:1.*30"):
+        shelf.clip(tmp_path / "b.bvh", parse_yaml("25", "x"))
+    (tmp_path / "b.bvh").write_text("\n".join([*lines[:-1], lines[-2]]))
+    assert shelf.clip(tmp_path / "b.bvh") is not first, "other contents are another motion"
+    with pytest.raises(BadInput, match="nowhere"):
+        shelf.clip(tmp_path / "nowhere.bvh")
 
 
 def test_split_merge_copy_paste_trim_and_stroke_at_the_play_head(tmp_path, repertoire) -> None:

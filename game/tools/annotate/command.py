@@ -61,7 +61,8 @@ def automatic(args: argparse.Namespace, takes: Sequence[Path]) -> int:
     learnt = _learnt(args.learn, repertoire)
     results = []
     for bvh in takes:
-        document, clip = open_document(bvh, args.author), clip_of(bvh)
+        clip = clip_of(bvh)
+        document = open_document(bvh, args.author, clip)
         # Learning a take from itself would only repeat what is already there.
         examples = [e for path, e in learnt if path.resolve() != bvh.with_suffix(".yaml").resolve()]
         proposed = propose(Annotator(examples), document, clip)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from game.core.errors import BadInput
-from game.embos.annotations import reference_clip
+from game.embos.clip_shelf import ClipShelf
 from game.tools.annotate.agreement import Agreement, agreement
 from game.tools.annotate.desk_jobs import Job, learnable, proposed_marks, sheets_by_file, tried
 from game.tools.annotate.desk_motion import Orbit
@@ -24,12 +25,14 @@ STYLES = ("character", "stall", "stick")
 class Actions:
     """behaviours: the repertoire's file; learn: folder of annotated takes to learn from besides those of the desk.
 
+    shelf: motions that have been read.
     searching, typing: what the window is asked to open (a search for a behaviour; the field of words or note).
     """
 
     desk: Desk
     behaviours: Path
     learn: Path
+    shelf: ClipShelf = field(default_factory=ClipShelf)
     orbit: Orbit = field(default_factory=Orbit)
     style: str = "character"
     searching: bool = False
@@ -108,6 +111,12 @@ class Actions:
             self.typing = what
 
     # -- work that takes a while -------------------------------------------------------------------------------------
+    def read_ahead(self) -> None:
+        """Read the folder's other motions beside the window, so that nobody waits for them at the first proposal or
+        the first try."""
+        paths = [notes.with_suffix(".bvh") for notes in learnable([self.desk.sheet.bvh.parent], Path())]
+        threading.Thread(target=self.shelf.fill, args=(paths,), daemon=True, name="reading ahead").start()
+
     def _begin(self, job: Job) -> None:
         if self.job is not None:
             self.desk.tell(f"still busy: {self.job.what}", failed=True)
@@ -120,11 +129,11 @@ class Actions:
         sheet = self.desk.sheet
         files = learnable([sheet.bvh.parent, self.learn], sheet.notes)
         others, repertoire = sheets_by_file(self.desk.sheets), self.desk.repertoire
-        document, clip = sheet.now, sheet.clip
+        document, clip, shelf = sheet.now, sheet.clip, self.shelf
         self._begin(
             Job(
                 f"learning from {len(files)} takes",
-                lambda: proposed_marks(document, clip, others, files, repertoire, reference_clip),
+                lambda: proposed_marks(document, clip, others, files, repertoire, shelf.clip),
                 lambda proposed: self.desk.take_proposals(sheet, proposed.marks),
             )
         )
@@ -133,8 +142,8 @@ class Actions:
         """Save, count the units of the folder anew; a game that watches takes them up."""
         if not self.desk.save():
             return
-        folder, behaviours = self.desk.sheet.bvh.parent, self.behaviours
-        self._begin(Job("counting the units", lambda: tried(folder, behaviours), self.desk.tell))
+        folder, behaviours, shelf = self.desk.sheet.bvh.parent, self.behaviours, self.shelf
+        self._begin(Job("counting the units", lambda: tried(folder, behaviours, shelf), self.desk.tell))
 
     def tick(self, elapsed_s: float) -> None:
         """Let time pass; take in what has been finished."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from game.app.analyse import counted, write_units
 from game.core.errors import BadInput, GameError
+from game.embos.clip_shelf import ClipShelf
 from game.embos.clips import TakeClip
 from game.embos.findings import Findings
 from game.embos.repertoire import Behaviour
@@ -105,16 +106,16 @@ def proposed_marks(
     return propose(Annotator(examples), sheet_document, clip)
 
 
-def tried(folder: Path, behaviours: Path) -> str:
+def tried(folder: Path, behaviours: Path, shelf: ClipShelf) -> str:
     """The units of a folder of takes, counted anew into units.yaml and clips.npz beside it. Raises BadInput with all
     that is wrong."""
     findings = Findings()
-    takes, units = counted(folder, behaviours, findings)
+    takes, units = counted(folder, behaviours, findings, read_clip=shelf.clip)
     if len(findings):
         more = [str(error) for error in findings.items]
         raise BadInput(f"{len(more)} findings, no units were written: " + "; ".join(more[:3]))
     out = folder.resolve().parent / "units.yaml"
-    changed = write_units(takes, units, out)
+    changed = write_units(takes, units, out, shelf.packed)
     verb = "written" if changed else "unchanged"
     return f"{len(units)} units from {len(takes)} takes {verb}: {out}"
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from game.core.errors import BadInput
-from game.embos.annotations import reference_clip
+from game.embos.clip_shelf import ClipShelf
 from game.embos.clips import TakeClip
 from game.tools.annotate.document import Document
 from game.tools.annotate.edits import History
@@ -37,10 +37,11 @@ class Sheet:
     _waiting_s: float = 0.0
 
     @staticmethod
-    def open(bvh: Path, author: str = "") -> Sheet:
-        """The take with its annotation, or an empty one. Raises BadInput for files that cannot be read."""
-        clip = reference_clip(bvh)
-        document = open_document(bvh, author)
+    def open(bvh: Path, author: str = "", shelf: ClipShelf | None = None) -> Sheet:
+        """The take with its annotation, or an empty one. shelf: motions that have been read. Raises BadInput for files
+        that cannot be read."""
+        clip = (shelf or ClipShelf()).clip(bvh)
+        document = open_document(bvh, author, clip)
         sheet = Sheet(bvh, clip, History(document, saved=document), on_disk=_digest(bvh.with_suffix(".yaml")))
         offer, sheet.refusal = recover(sheet.notes)
         if offer is not None and (offer.frames, round(offer.fps, 3)) != (document.frames, round(document.fps, 3)):

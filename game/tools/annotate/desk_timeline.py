@@ -86,7 +86,6 @@ class Timeline:
         self.scroll = min(max(self.scroll, 0.0), below)
         pen.box(x, y, w, h, colour("paper"), 5.0)
         imgui.set_cursor_screen_pos(imgui.ImVec2(x, y))
-        imgui.set_next_item_allow_overlap()
         flags = imgui.ButtonFlags_
         imgui.invisible_button(
             "time line", imgui.ImVec2(w, h),
@@ -293,8 +292,7 @@ class Timeline:
             self._wheel(left, mouse, io)
         if hovered and imgui.is_mouse_clicked(0):
             self._press(row, left, mouse.x, mouse.y, time_s, y, body, more=bool(io.key_ctrl))
-        if hovered and imgui.is_mouse_double_clicked(0) and self._hovered is not None:
-            self.opened = self._hovered[0]
+            self._twice = imgui.is_mouse_double_clicked(0)
         if hovered and imgui.is_mouse_released(1) and not self._held:
             if self._hovered is not None and self._hovered[0] not in desk.selected:
                 desk.select(self._hovered[0])
@@ -381,11 +379,15 @@ class Timeline:
                 desk.create(row.layer, start, desk.snapped(time_s), row.behaviour or None)
             else:
                 desk.clock.go_to(edits_frame(time_s, desk.document.fps))
-        elif self._held == "ready" and self._drag is not None and len(desk.selected) > 1:
-            desk.select(self._drag.marks[0])
+        elif self._held == "ready" and self._drag is not None:
+            if len(desk.selected) > 1:
+                desk.select(self._drag.marks[0])
+            if self._twice:  # asked for on letting go: whoever clicks a span and then drags it wants to drag it
+                self.opened = self._drag.marks[0]
         self._held, self._drag, self._band = "", None, None
 
     _from = 0.0
+    _twice = False
 
 
 def edits_frame(time_s: float, fps: float) -> float:

@@ -15,6 +15,7 @@ from imgui_bundle import imgui
 
 from game.app.play import need_display
 from game.core.paths import ASSETS
+from game.embos.clip_shelf import ClipShelf
 from game.render import Device
 from game.tools.annotate.command import repertoire_of
 from game.tools.annotate.desk_actions import STYLES, Actions
@@ -301,13 +302,15 @@ class DeskWindow:
 def open_desk(args: argparse.Namespace, takes: Sequence[Path]) -> int:
     """Open the window; returns when it is closed. Raises BadInput for takes that cannot be read."""
     args.behaviours = args.behaviours or project_behaviours(takes, ASSETS / "motion" / "behaviours.yaml")
-    desk = Desk([Sheet.open(path, args.author) for path in takes], repertoire_of(args))
-    actions = Actions(desk, args.behaviours, args.learn)
+    shelf = ClipShelf()
+    desk = Desk([Sheet.open(path, args.author, shelf) for path in takes], repertoire_of(args))
+    actions = Actions(desk, args.behaviours, args.learn, shelf)
     refused = [sheet.refusal for sheet in desk.sheets if sheet.refusal]
     desk.tell(refused[0] if refused else "F1 shows every key", failed=bool(refused))
     need_display()
     device = Device.window(args.size[0], args.size[1], "Annotation desk")
     window = DeskWindow(device, actions)
+    actions.read_ahead()
     try:
         window.run()
     finally:

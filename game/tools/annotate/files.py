@@ -13,6 +13,7 @@ from pathlib import Path
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
 from game.embos.annotations import check_frames
+from game.embos.clips import TakeClip
 from game.embos.findings import Findings
 from game.embos.units import LAYERS
 from game.embos.units_file import one_of
@@ -29,14 +30,19 @@ _SPAN = ("layer", "behaviour", "start_s", "end_s", "frames", "stroke_s", "words"
 MAX_BYTES = 4_000_000
 
 
-def open_document(bvh: Path, author: str = "") -> Document:
-    """The annotation beside a BVH file (same name, .yaml), or a new empty one. Raises BadInput."""
-    clip = read_bvh(bvh).clip
+def open_document(bvh: Path, author: str = "", motion: TakeClip | None = None) -> Document:
+    """The annotation beside a BVH file (same name, .yaml), or a new empty one. motion: of the file, where it has been
+    read. Raises BadInput."""
+    if motion is None:
+        clip = read_bvh(bvh).clip
+        frame_time_s, frames = clip.frame_time_s, len(clip)
+    else:
+        frame_time_s, frames = motion.frame_time_s, len(motion.rotation)
     notes = bvh.with_suffix(".yaml")
-    fps = round(1.0 / clip.frame_time_s, 6)
+    fps = round(1.0 / frame_time_s, 6)
     if notes.exists():
-        return replace(read_document(notes), fps=fps, frames=len(clip))
-    return Document(take=bvh.stem, bvh=bvh.name, fps=fps, frames=len(clip), author=author)
+        return replace(read_document(notes), fps=fps, frames=frames)
+    return Document(take=bvh.stem, bvh=bvh.name, fps=fps, frames=frames, author=author)
 
 
 def read_document(path: Path) -> Document:
