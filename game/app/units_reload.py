@@ -18,6 +18,9 @@ __all__ = ["Known", "UnitsWatch", "load_body", "take_up_units", "watched_units"]
 
 POLL_S = 0.1
 """Files are looked at ten times a second: new units are to be seen within a second."""
+YIELD_SHARE, MOST_YIELD_S = 0.5, 0.1
+"""While new units are read a frame lasts longer by this share of it: drawing keeps the interpreter to itself, and the
+reading would hardly get on beside it."""
 SAID_S = 6.0
 """How long the news of new units stands; that they are broken stands until they are not."""
 
@@ -103,6 +106,8 @@ class UnitsWatch:
             self._said_s -= elapsed_s
             self.said = self.said if self._said_s > 0.0 else ""
         self._late_s += elapsed_s
+        if self._thread is not None:
+            self._thread.join(min(YIELD_SHARE * elapsed_s, MOST_YIELD_S))
         read = self._thread is not None and not self._thread.is_alive()
         if self._late_s < POLL_S and not read:
             return
