@@ -163,13 +163,14 @@ def _baked(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: MotionUnit
     stroke, period = 0.0, None
     spans = [_span_rows(library, takes, unit, v) for v in unit.variants]
     spans[0] = rw.align_to(spans[0], rw.REST_ROW)
-    spans = [rw.align_to(rows, spans[0].mean(axis=0)) for rows in spans]
+    side = spans[0].mean(axis=0)
+    spans = [spans[0], *(rw.align_to(rows, side) for rows in spans[1:])]
     if unit.layer == "posture":
         spans = [rw.seamless_loop(rows) for rows in spans]
     else:
-        spans, stroke = _aligned(unit, spans)
-        period = rw.period_of(spans[0], owned) if unit.layer == "mannerism" else None
-        spans = [rw.additive_rows(rows, owned, ADDITIVE_SHARE) for rows in spans]
+        together, stroke = _aligned(unit, spans)
+        period = rw.period_of(together[0], owned) if unit.layer == "mannerism" else None
+        spans = list(rw.additive_rows(together, owned, ADDITIVE_SHARE))
     loop_first, loop_frames = period or (0, 0)
     return BakedUnit(tuple(spans), owned, _contacts(unit), stroke, loop_first, loop_frames)
 
@@ -208,18 +209,17 @@ def _span_rows(library: UnitLibrary, takes: dict[str, rw.TakeRows], unit: Motion
         takes[variant.take] = rw.take_rows(take.rotation, take.root)
     rows = takes[variant.take].span(frames, _contacts(unit))
     wanted = max(round((high - low) * take.frame_time_s * FPS), _POSTURE_MIN_FRAMES if posture else 4)
-    return rows if wanted == len(rows) else rw.resample(rows, wanted)
+    return rows if wanted == len(rows) else rw.resample([rows], wanted)[0]
 
 
-def _aligned(unit: MotionUnit, spans: list[Floats]) -> tuple[list[Floats], float]:
-    """Spans resampled to one length with their strokes at one frame; -> spans and that frame."""
+def _aligned(unit: MotionUnit, spans: list[Floats]) -> tuple[Floats, float]:
+    """Spans resampled to one length with their strokes at one frame -> (V, frames, CHANNELS) and that frame."""
     length = max(len(rows) for rows in spans)
     if unit.layer != "gesture":
-        return [rw.resample(rows, length) for rows in spans], 0.0
-    shares = [float(np.clip(v.stroke_offset_s / max(v.length_s, 1e-6), 0.05, 0.95)) for v in unit.variants]
+        return rw.resample(spans, length), 0.0
+    shares = [min(max(v.stroke_offset_s / max(v.length_s, 1e-6), 0.05), 0.95) for v in unit.variants]
     goal = float(np.mean(shares))
-    warped = [rw.resample(rows, length, (share, goal)) for rows, share in zip(spans, shares, strict=True)]
-    return warped, goal * (length - 1)
+    return rw.resample(spans, length, [(share, goal) for share in shares]), goal * (length - 1)
 
 
 def _neutral_posture(library: UnitLibrary) -> int:

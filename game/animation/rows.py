@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,7 @@ from scipy.ndimage import uniform_filter1d
 from game.animation import channels as ch
 from game.core import quaternion as quat
 from game.core.humanoid import PART_JOINTS, REFERENCE
+from game.core.skeleton import Skeleton
 
 __all__ = [
     "CROSSFADE_FRAMES",
@@ -34,10 +36,29 @@ CROSSFADE_FRAMES = 30
 REPEATS = 0.12
 """A movement is periodic when it differs from itself a period later by less than this share of its energy."""
 
-_INDEX = REFERENCE.index
 _SIDES = ("left", "right")
+_FINGERS = ("Middle", "Index", "Little")
+_LEGS = [REFERENCE.index[name] for name in PART_JOINTS["legs"]]
+
+
+def _upper_body() -> tuple[NDArray[np.intp], Skeleton]:
+    """The joints whose places rows speak of, and those above them: in REFERENCE, and as a skeleton of their own."""
+    index, parents = REFERENCE.index, REFERENCE.parents
+    ends = [*(f"{s}{f}Intermediate" for s in _SIDES for f in _FINGERS), *ch.CONTACT_FRAMES[1:]]
+    needed: set[int] = set()
+    for joint in (index[name] for name in ends):
+        while joint >= 0:
+            needed.add(joint)
+            joint = int(parents[joint])
+    kept = np.array(sorted(needed), dtype=np.intp)
+    above = np.where(parents[kept] < 0, -1, np.searchsorted(kept, parents[kept]))
+    names = tuple(REFERENCE.names[joint] for joint in kept)
+    return kept, Skeleton(names, above, REFERENCE.rest_translation[kept], REFERENCE.rest_rotation[kept])
+
+
+_UPPER, _UPPER_BODY = _upper_body()
+_INDEX = _UPPER_BODY.index
 _WRISTS = [_INDEX[f"{s}Hand"] for s in _SIDES]
-_LEGS = [_INDEX[name] for name in PART_JOINTS["legs"]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +87,10 @@ def take_rows(rotation: Floats, root: Floats) -> TakeRows:
     count = len(rotation)
     rotation = rotation.copy()
     rotation[:, _LEGS] = quat.IDENTITY
-    shift = np.broadcast_to(REFERENCE.rest_translation.astype(rotation.dtype), (count, ch.JOINTS, 3)).copy()
+    shift = np.empty((count, len(_UPPER), 3), dtype=rotation.dtype)
+    shift[:] = _UPPER_BODY.rest_translation
     shift[:, 0] = root
-    position, turned = REFERENCE.to_model(rotation, shift)
+    position, turned = _UPPER_BODY.to_model(rotation[:, _UPPER], shift)
     base = np.zeros((count, ch.CHANNELS), dtype=np.float32)
     base[:, ch.ROTATION] = _continuous(rotation).reshape(count, -1)
     base[:, ch.ROOT] = root
@@ -89,8 +111,8 @@ def take_rows(rotation: Floats, root: Floats) -> TakeRows:
 def _points_in_hand(side: str, position: Floats, turned: Floats) -> Floats:
     """(F, 4, 3) middle knuckle and the tips of middle, index and little finger, in the hand's frame."""
     hand = _INDEX[f"{side}Hand"]
-    joints = [_INDEX[f"{side}{finger}Intermediate"] for finger in ("Middle", "Index", "Little")]
-    along = REFERENCE.rest_translation[joints].astype(turned.dtype)
+    joints = [_INDEX[f"{side}{finger}Intermediate"] for finger in _FINGERS]
+    along = _UPPER_BODY.rest_translation[joints].astype(turned.dtype)
     tips = position[:, joints] + quat.rotate(turned[:, joints], np.broadcast_to(along, (len(position), 3, 3)))
     points = np.concatenate([position[:, joints[:1]], tips], axis=1) - position[:, hand, None]
     return quat.rotate(quat.conjugate(turned[:, hand, None]), points)
@@ -98,29 +120,29 @@ def _points_in_hand(side: str, position: Floats, turned: Floats) -> Floats:
 
 def _continuous(q: Floats) -> Floats:
     """Signs of (F, J, 4) chosen so that neighbouring frames share a hemisphere."""
-    dots = (q[1:] * q[:-1]).sum(-1)
     signs = np.ones((*q.shape[:2], 1), dtype=q.dtype)
-    signs[1:, :, 0] = np.cumprod(np.where(dots < 0.0, -1.0, 1.0), axis=0)
+    turns = np.einsum("fji,fji->fj", q[1:], q[:-1]) < 0.0
+    signs[1:, :, 0] -= 2.0 * (np.cumsum(turns, axis=0) & 1)
     return np.asarray(q * signs)
 
 
-def _unit(rows: Rows) -> Rows:
-    """Renormalise the quaternions of blended rows."""
-    rows = rows.copy()
+def _renormalise(rows: Rows) -> Rows:
+    """Blended rows (..., CHANNELS) with their quaternions brought back to unit length, in place."""
     for part in (ch.ROTATION, ch.PALM):
-        q = rows[:, part].reshape(len(rows), -1, 4)
-        rows[:, part] = (q / np.maximum(np.linalg.norm(q, axis=-1, keepdims=True), 1e-6)).reshape(len(rows), -1)
+        q = rows[..., part].reshape(*rows.shape[:-1], -1, 4)
+        rows[..., part] = (q / np.maximum(np.sqrt(np.einsum("...i,...i->...", q, q)), 1e-6)[..., None]).reshape(
+            rows[..., part].shape
+        )
     return rows
 
 
 def align_to(rows: Rows, reference: Rows) -> Rows:
-    """Flip whole quaternion channels of rows (F, CHANNELS) so that they lie on the side of reference (CHANNELS,)."""
-    rows = rows.copy()
+    """Rows (F, CHANNELS) with whole quaternion channels flipped to the side of reference (CHANNELS,)."""
+    along = rows.mean(axis=0) * reference
+    signs = np.ones(ch.CHANNELS, dtype=rows.dtype)
     for part in (ch.ROTATION, ch.PALM):
-        q = rows[:, part].reshape(len(rows), -1, 4)
-        dots = (q.mean(axis=0) * reference[part].reshape(-1, 4)).sum(-1)
-        rows[:, part] = (q * np.where(dots < 0.0, -1.0, 1.0)[None, :, None]).reshape(len(rows), -1)
-    return rows
+        signs[part] = np.repeat(np.where(along[part].reshape(-1, 4).sum(-1) < 0.0, -1.0, 1.0), 4)
+    return rows * signs if signs.min() < 0.0 else rows
 
 
 def seamless_loop(rows: Rows) -> Rows:
@@ -133,49 +155,63 @@ def seamless_loop(rows: Rows) -> Rows:
         return np.concatenate([rows, rows[:1]])
     blend = max(min(CROSSFADE_FRAMES, count // 3), 1)
     u = ((np.arange(blend) + 1.0) / (blend + 1.0))[:, None]
-    weight = u * u * (3.0 - 2.0 * u)
-    loop = rows[blend:].copy()
-    loop[-blend:] = rows[count - blend :] * (1.0 - weight) + rows[:blend] * weight
-    return _unit(np.concatenate([loop, loop[:1]]).astype(np.float32))
+    weight = (u * u * (3.0 - 2.0 * u)).astype(rows.dtype)
+    loop = np.empty((count - blend + 1, ch.CHANNELS), dtype=rows.dtype)
+    loop[:-1] = rows[blend:]
+    loop[-1 - blend : -1] += (rows[:blend] - rows[count - blend :]) * weight
+    _renormalise(loop[-1 - blend : -1])
+    loop[-1] = loop[0]
+    return loop
 
 
-def resample(rows: Rows, count: int, stroke: tuple[float, float] | None = None) -> Rows:
-    """Rows at ``count`` moments from first to last.
+def resample(spans: Sequence[Rows], count: int, strokes: Sequence[tuple[float, float]] | None = None) -> Rows:
+    """Each of V spans (F, CHANNELS) at ``count`` moments from first to last -> (V, count, CHANNELS).
 
-    stroke: (where it is, where it shall be), as shares of the span; the strokes of variants that are mixed align.
+    strokes: for each span (where its stroke is, where it shall be), as shares of the span; the strokes of variants
+    that are mixed align.
     """
-    u = np.linspace(0.0, 1.0, count)
-    if stroke is not None:
-        source, goal = (float(np.clip(s, 0.05, 0.95)) for s in stroke)
-        u = np.interp(u, [0.0, goal, 1.0], [0.0, source, 1.0])
-    at = u * (len(rows) - 1)
-    low = np.minimum(at.astype(np.intp), max(len(rows) - 2, 0))
-    high = np.minimum(low + 1, len(rows) - 1)
-    t = (at - low)[:, None]
-    return _unit((rows[low] * (1.0 - t) + rows[high] * t).astype(np.float32))
+    low = np.empty((len(spans), count), dtype=np.intp)
+    high, part = np.empty_like(low), np.empty((len(spans), count, 1), dtype=np.float32)
+    first, u = 0, np.linspace(0.0, 1.0, count)
+    for i, rows in enumerate(spans):
+        at = u * (len(rows) - 1)
+        if strokes is not None:
+            source, goal = (min(max(share, 0.05), 0.95) for share in strokes[i])
+            at = np.interp(u, [0.0, goal, 1.0], [0.0, source, 1.0]) * (len(rows) - 1)
+        below = np.minimum(at.astype(np.intp), max(len(rows) - 2, 0))
+        low[i], high[i] = first + below, first + np.minimum(below + 1, len(rows) - 1)
+        part[i, :, 0] = at - below
+        first += len(rows)
+    together = np.concatenate(spans)
+    result = together.take(low, axis=0)
+    step = together.take(high, axis=0)
+    step -= result
+    step *= part
+    result += step
+    return _renormalise(result)
 
 
 def additive_rows(rows: Rows, owned: NDArray[np.bool_], share: float) -> Rows:
-    """What a unit adds where it owns nothing: its departure from the straight way between its ends.
+    """What units (..., F, CHANNELS) add where they own nothing: their departure from the straight way between their
+    ends.
 
     owned: (PARTS,) bool. Owned channels stay as they are, torso and head keep ``share`` of their departure as a
     small rotation (vector part of a quaternion), everything else becomes 0.
     """
-    count = len(rows)
-    result = np.where(owned[ch.PART_OF_CHANNEL], rows, np.float32(0.0))
-    q = rows[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
-    out = result[:, ch.ROTATION].reshape(count, ch.JOINTS, 4)
+    count = rows.shape[-2]
+    result = rows * owned[ch.PART_OF_CHANNEL].astype(rows.dtype)
     line = np.linspace(0.0, 1.0, count, dtype=rows.dtype)[:, None]
     joints = ch.ADDITIVE_JOINTS[~owned[ch.PART_OF_JOINT[ch.ADDITIVE_JOINTS]]]
     if len(joints):
-        here = q[:, joints]
-        delta = quat.multiply(quat.conjugate(quat.nlerp(here[:1], here[-1:], line)), here)
-        out[:, joints, :3] = share * np.where(delta[..., 3:] < 0.0, -delta[..., :3], delta[..., :3])
+        channels = 4 * joints[:, None] + np.arange(4)
+        here = rows[..., channels]
+        delta = quat.multiply(quat.conjugate(quat.nlerp(here[..., :1, :, :], here[..., -1:, :, :], line)), here)
+        delta *= np.where(delta[..., 3:] < 0.0, np.float32(-share), np.float32(share))
+        result[..., channels[:, :3]] = delta[..., :3]
     if not owned[ch.PARTS.index("spine")]:
-        root = rows[:, ch.ROOT]
-        result[:, ch.ROOT] = share * (root - (root[:1] * (1.0 - line) + root[-1:] * line))
-    result[:, ch.ROTATION] = out.reshape(count, -1)
-    return result.astype(np.float32)
+        root = rows[..., ch.ROOT]
+        result[..., ch.ROOT] = share * (root - (root[..., :1, :] * (1.0 - line) + root[..., -1:, :] * line))
+    return result
 
 
 def period_of(rows: Rows, owned: NDArray[np.bool_]) -> tuple[int, int] | None:

@@ -54,7 +54,7 @@ class TakeClip:
 
     def frame(self, time_s: float) -> int:
         """The nearest frame, clamped to the take."""
-        return int(np.clip(round(time_s / self.frame_time_s), 0, len(self.rotation) - 1))
+        return min(max(round(time_s / self.frame_time_s), 0), len(self.rotation) - 1)
 
 
 class ClipBank(Mapping[str, TakeClip]):

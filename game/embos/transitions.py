@@ -47,28 +47,31 @@ def pose_distances(units: Sequence[MotionUnit], clips: Mapping[str, TakeClip]) -
     Averaged over the variants of both that come from one emotion, over all pairs where they share none.
     0 where either has no clip (rest).
     """
-    owner, emotion, first, last = [], [], [], []
-    for i, unit in enumerate(units):
-        for variant in unit.variants:
-            take = clips.get(variant.take)
-            if take is not None:
-                owner.append(i)
-                emotion.append(variant.emotion)
-                first.append(take.rotation[take.frame(variant.start_s), _MAJOR])
-                last.append(take.rotation[max(take.frame(variant.end_s) - 1, 0), _MAJOR])
+    spans = [
+        (i, variant, clips[variant.take])
+        for i, unit in enumerate(units)
+        for variant in unit.variants
+        if variant.take in clips
+    ]
     count = len(units)
-    if not owner:
+    if not spans:
         return np.zeros((count, count))
-    member = np.zeros((count, len(owner)))
-    member[owner, np.arange(len(owner))] = 1.0
-    total = np.zeros((len(owner), len(owner)))
-    ends, starts = np.array(last, dtype=np.float64), np.array(first, dtype=np.float64)
-    for joint in range(len(_MAJOR)):  # a joint at a time keeps the memory at variants²
-        dot = np.abs(ends[:, joint] @ starts[:, joint].T)
-        total += 2.0 * np.arccos(np.minimum(dot, 1.0))
-    total /= len(_MAJOR)
-    same = (np.array(emotion)[:, None] == np.array(emotion)[None, :]).astype(np.float64)
+    member = np.zeros((count, len(spans)))
+    member[[i for i, _, _ in spans], np.arange(len(spans))] = 1.0
+    first = np.array([take.rotation[take.frame(v.start_s), _MAJOR] for _, v, take in spans], dtype=np.float64)
+    last = np.array([take.rotation[max(take.frame(v.end_s) - 1, 0), _MAJOR] for _, v, take in spans], dtype=np.float64)
+    emotion = np.array([variant.emotion for _, variant, _ in spans])
+    same = (emotion[:, None] == emotion).astype(np.float64)
     pairs_same, pairs_all = member @ same @ member.T, member @ np.ones_like(same) @ member.T
+    # Arc cosines are dear: only those of pairs that count.
+    strangers = (pairs_same == 0.0).astype(np.float64)
+    counting = np.flatnonzero((same + member.T @ strangers @ member) > 0.0)
+    angle = np.zeros(len(counting))
+    for joint in range(len(_MAJOR)):  # a joint at a time keeps the memory at variants²
+        dot = np.abs((last[:, joint] @ first[:, joint].T).take(counting))
+        angle += 2.0 * np.arccos(np.minimum(dot, 1.0))
+    total = np.zeros_like(same)
+    total.put(counting, angle / len(_MAJOR))
     mean_same = (member @ (total * same) @ member.T) / np.maximum(pairs_same, 1.0)
     mean_all = (member @ total @ member.T) / np.maximum(pairs_all, 1.0)
     return np.asarray(np.where(pairs_same > 0, mean_same, mean_all))
