@@ -159,9 +159,8 @@ def seamless_loop(rows: Rows) -> Rows:
     loop = np.empty((count - blend + 1, ch.CHANNELS), dtype=rows.dtype)
     loop[:-1] = rows[blend:]
     loop[-1 - blend : -1] += (rows[:blend] - rows[count - blend :]) * weight
-    _renormalise(loop[-1 - blend : -1])
     loop[-1] = loop[0]
-    return loop
+    return _renormalise(loop)
 
 
 def resample(spans: Sequence[Rows], count: int, strokes: Sequence[tuple[float, float]] | None = None) -> Rows:
