@@ -30,20 +30,24 @@ def _left_table() -> Floats:
     return table.reshape(4, 16)
 
 
-def _matrix_table() -> Floats:
-    """(16, 16): outer(q, q) @ table is the 4×4 affine matrix of a unit quaternion, without translation."""
-    table = np.zeros((4, 4, 4, 4), dtype=np.float32)
+def _matrix_tables() -> tuple[Floats, Floats]:
+    """(4, 20) and (10, 16): q @ the first are the left and the right factors of q's ten products, the products @ the
+    second the 4×4 affine matrix of a unit quaternion, without translation."""
     x, y, z, w = range(4)
+    pairs = ((x, x), (y, y), (z, z), (w, w), (x, y), (y, z), (z, x), (x, w), (y, w), (z, w))
+    factors = np.zeros((4, 2, 10), dtype=np.float32)
+    table = np.zeros((10, 4, 4), dtype=np.float32)
+    for product, (left, right) in enumerate(pairs):
+        factors[left, 0, product] = factors[right, 1, product] = 1
     for i, (j, k) in enumerate(((y, z), (z, x), (x, y))):
         # Homogeneous form: the diagonal is w² + i² − j² − k², so no constant term is needed.
-        table[w, w, i, i] = table[i, i, i, i] = 1
-        table[j, j, i, i] = table[k, k, i, i] = -1
-        table[i, j, i, j] = table[i, j, j, i] = 2
-        table[w, k, i, j] = -2
-        table[w, k, j, i] = 2
-    for i in range(4):
-        table[i, i, 3, 3] = 1
-    return table.reshape(16, 16)
+        table[3, i, i] = table[i, i, i] = 1
+        table[j, i, i] = table[k, i, i] = -1
+        table[4 + i, i, j] = table[4 + i, j, i] = 2
+        table[7 + k, i, j] = -2
+        table[7 + k, j, i] = 2
+    table[:4, 3, 3] = 1
+    return factors.reshape(4, 20), table.reshape(10, 16)
 
 
 def _candidates_table() -> tuple[Floats, Floats]:
@@ -62,11 +66,11 @@ def _candidates_table() -> tuple[Floats, Floats]:
 
 
 _LEFT = _left_table()
-_MATRIX = _matrix_table()
+_FACTORS, _MATRIX = _matrix_tables()
 _CANDIDATES, _CANDIDATES_AT_ZERO = _candidates_table()
 _SUM = np.ones((4, 4), dtype=np.float32)
 _CONJUGATE = np.array([-1, -1, -1, 1], dtype=np.float32)
-for _table in (_LEFT, _MATRIX, _CANDIDATES, _CANDIDATES_AT_ZERO, _SUM, _CONJUGATE):
+for _table in (_LEFT, _FACTORS, _MATRIX, _CANDIDATES, _CANDIDATES_AT_ZERO, _SUM, _CONJUGATE):
     _table.setflags(write=False)
 
 
@@ -86,10 +90,11 @@ def normalize(q: Floats) -> Floats:
     return np.asarray(q / np.sqrt((q * q) @ _SUM))
 
 
-def affine(q: Floats) -> Floats:
-    """Unit quaternions (..., 4) -> (..., 4, 4) affine matrices with zero translation."""
-    outer = q[..., :, None] * q[..., None, :]
-    return np.asarray((outer.reshape(*q.shape[:-1], 16) @ _MATRIX).reshape(*q.shape[:-1], 4, 4))
+def affine(q: Floats, out: Floats | None = None) -> Floats:
+    """Unit quaternions (..., 4) -> (..., 4, 4) affine matrices with zero translation; out: (..., 16) to write to."""
+    factors = q @ _FACTORS
+    matrix = np.matmul(factors[..., :10] * factors[..., 10:], _MATRIX, out=out)
+    return np.asarray(matrix.reshape(*q.shape[:-1], 4, 4))
 
 
 def rotation_matrix(q: Floats) -> Floats:
@@ -99,8 +104,9 @@ def rotation_matrix(q: Floats) -> Floats:
 
 def from_matrix(matrix: Floats) -> Floats:
     """Rotation matrices (..., 3, 3) -> unit quaternions (..., 4); the sign is arbitrary."""
-    shape = matrix.shape[:-2]
-    rows = (matrix.reshape(-1, 9) @ _CANDIDATES + _CANDIDATES_AT_ZERO).reshape(-1, 4, 4)
+    rows = matrix.reshape(-1, 9) @ _CANDIDATES
+    rows += _CANDIDATES_AT_ZERO
     # Any row of outer(q, q) is q up to scale; the one with the largest diagonal is the best conditioned.
-    best = rows.reshape(-1, 16)[:, ::5].argmax(axis=1)
-    return normalize(rows[np.arange(len(rows)), best]).reshape(*shape, 4)
+    best = rows[:, ::5].argmax(axis=1)
+    best += np.arange(0, 4 * len(rows), 4)
+    return normalize(rows.reshape(-1, 4).take(best, axis=0)).reshape(*matrix.shape[:-2], 4)

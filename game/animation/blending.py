@@ -18,7 +18,7 @@ from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation.collision import TABLE_BACK_Z_M
 from game.animation.motion_bank import MotionBank
-from game.animation.playback import Playback
+from game.animation.playback import Layered, Playback
 from game.core.humanoid import TABLE_TOP_M
 
 __all__ = ["Blend", "advance_blend", "compose", "start_blend", "switch"]
@@ -45,11 +45,10 @@ EDGE_LIFT_M, EDGE_CLEAR_M = 0.05, 0.13
 """Between below and above the table a hand goes round its edge: it bows up by this and what it lacks of this height."""
 ARM_M = 0.42
 
-# Quintic Hermite basis on [0, 1]: value 1 → 0 and slope 1 → 0, everything else vanishing at both ends; with slopes.
-_VALUE = np.array([[1, 0], [0, 0], [0, -30], [-10, 60], [15, -30], [-6, 0]], dtype=np.float32)
-_SLOPE = np.array([[0, 1], [1, 0], [0, -18], [-6, 32], [8, -15], [-3, 0]], dtype=np.float32)
-_POWERS = np.arange(6, dtype=np.float32)
-for _table in (_VALUE, _SLOPE, _POWERS):
+# Polynomials in u of the two curves and of their slopes (_add_remains): coefficients by (power, curve).
+_VALUE = np.array([[1, 0], [3, 1], [6, 3]], dtype=np.float32)[:, :, None, None]
+_SLOPE = np.array([[0, 1], [0, 2], [-30, -15]], dtype=np.float32)[:, :, None, None]
+for _table in (_VALUE, _SLOPE):
     _table.setflags(write=False)
 
 _TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
@@ -59,50 +58,60 @@ _ARMS = [ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm")]
 
 
 @dataclass(frozen=True, eq=False)
-class Blend:
-    """n characters. gate: (n, L, CHANNELS) share of each layer. owned: (n, L, PARTS) what each layer's unit owns.
-    frame: (n, 2) contact frame of the hands. offset, offset_speed:
-    (n, CHANNELS) at the last switch, the latter times brake_s. arc: (n, 2, 3) how far the hands' ways bow, metres in
-    their contact frames. age_s, span_s, brake_s: (n, PARTS). row, speed:
-    (n, CHANNELS) shown at the last tick. known: (n,) False before the first tick."""
+class Source:
+    """What n characters' rows are made of since their last switch. gate: (n, L, CHANNELS) share of each layer. owned:
+    (n, L, PARTS) what each layer's unit owns. frame: (n, 2) contact frame of the hands. attention: (n,) 0 where a unit
+    moves the gaze itself, else 1. offset: (2, n, CHANNELS) how far what was shown lay from what was wanted, and how
+    much faster it moved, the latter times brake_s. arc: (n, 2, 3) how far the hands' ways bow, metres in their contact
+    frames. ends_s: (2, n, PARTS) how long offset and speed take to vanish (span and brake)."""
 
     gate: Floats
     owned: Bools
     frame: NDArray[np.intp]
+    attention: Floats
     offset: Floats
-    offset_speed: Floats
     arc: Floats
+    ends_s: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Blend:
+    """n characters. age_s: (n, PARTS) since the last switch. row, speed: (n, CHANNELS) shown at the last tick.
+    known: False before the first."""
+
+    source: Source
     age_s: Floats
-    span_s: Floats
-    brake_s: Floats
     row: Floats
     speed: Floats
-    known: Bools
+    known: bool = True
 
 
 def start_blend(n: int, layers: int) -> Blend:
     """Before the first tick: whatever comes is taken as it is."""
     parts = len(ch.PARTS)
-    zero = np.zeros((n, ch.CHANNELS), dtype=np.float32)
-    return Blend(
+    source = Source(
         gate=np.zeros((n, layers, ch.CHANNELS), dtype=np.float32),
         owned=np.zeros((n, layers, parts), dtype=bool),
         frame=np.zeros((n, 2), dtype=np.intp),
-        offset=zero,
-        offset_speed=zero,
+        attention=np.ones(n),
+        offset=np.zeros((2, n, ch.CHANNELS), dtype=np.float32),
         arc=np.zeros((n, 2, 3), dtype=np.float32),
-        age_s=np.ones((n, parts), dtype=np.float32),
-        span_s=np.ones((n, parts), dtype=np.float32),
-        brake_s=np.ones((n, parts), dtype=np.float32),
-        row=zero,
-        speed=zero,
-        known=np.zeros(n, dtype=bool),
+        ends_s=np.ones((2, n, parts), dtype=np.float32),
     )
+    zero = np.zeros((n, ch.CHANNELS), dtype=np.float32)
+    return Blend(source, np.ones((n, parts), dtype=np.float32), zero, zero, known=False)
 
 
-def compose(value: Floats, gate: Floats) -> tuple[Floats, Floats]:
-    """Layer values (n, L, 2, CHANNELS) and gate -> the wanted row and its change per second, (n, CHANNELS) each."""
-    both = (value * gate[:, :, None]).sum(axis=1)
+def compose(values: Layered, gate: Floats) -> tuple[Floats, Floats]:
+    """What the layers say through their gates (n, L, CHANNELS): the wanted row and its change per second, (n, CHANNELS)
+    each."""
+    layer, _, value = values[0]
+    both = value * gate[:, layer, None]
+    for layer, who, value in values[1:]:
+        if who is None:
+            both += value * gate[:, layer, None]
+        else:
+            both[who] += value * gate[who, layer, None]
     return both[:, 0], both[:, 1]
 
 
@@ -111,7 +120,7 @@ def switch(
     state: Blend,
     playback: Playback,
     events: Bools,
-    value: Floats,
+    values: Layered,
     base_s: Floats,
     arc: Floats,
     contact_frames: Floats,
@@ -120,13 +129,17 @@ def switch(
 ) -> Blend:
     """Take up new sources. events: (n, L) layers whose source jumped; base_s: (n,) length of a middling transition;
     arc: (n,) bow of the hands' ways; contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
-    layers = events.shape[1]
+    layers, old = events.shape[1], state.source
     owned = bank.owned[playback.unit] & playback.active[:, :, None]
-    touched = owned | state.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
-    changed = (touched & events[:, :, None]).any(axis=1)
     gate, frame = _gates(bank, playback, owned, posture_layer)
-    goal, goal_speed = compose(value, gate)
-    row, speed = _in_frames(state, frame, contact_frames)
+    looks = (bank.looks[playback.unit] & playback.active).any(axis=1)
+    source = replace(old, gate=gate, owned=owned, frame=frame, attention=np.where(looks, 0.0, 1.0))
+    if not state.known:
+        return replace(state, source=source)
+    touched = owned | old.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
+    fresh = (touched & events[:, :, None]).any(axis=1)
+    goal, goal_speed = compose(values, gate)
+    row, speed = _in_frames(state.row, state.speed, old.frame, frame, contact_frames)
     row = row + speed * np.float32(dt_s)
     row, speed = _same_side(row, speed, goal)
     offset, offset_speed = row - goal, speed - goal_speed
@@ -134,39 +147,48 @@ def switch(
     span = _spans(offset, base_s)
     span[:, _ARMS] = np.maximum(span[:, _ARMS], ARC_PACE * np.sqrt(np.linalg.norm(arcs, axis=-1)))
     span = np.minimum(span, _until_stroke(bank, playback, owned))
-    fresh = changed & state.known[:, None]
-    span = np.where(fresh, span, state.span_s)
-    brake = np.where(fresh, np.minimum(_brakes(offset_speed), span), state.brake_s)
-    per_channel = fresh[:, ch.PART_OF_CHANNEL]
-    brake_of_channel = brake[:, ch.PART_OF_CHANNEL]
-    return replace(
-        state,
-        gate=gate,
-        owned=owned,
-        frame=frame,
-        offset=np.where(per_channel, offset, state.offset),
-        offset_speed=np.where(per_channel, offset_speed * brake_of_channel, state.offset_speed),
-        arc=np.where(fresh[:, _ARMS, None], arcs, state.arc),
-        age_s=np.where(fresh, np.float32(0.0), state.age_s),
-        span_s=span,
-        brake_s=brake,
+    brake = np.minimum(_brakes(offset_speed), span)
+    offset_speed *= brake[:, ch.PART_OF_CHANNEL]
+    source = replace(
+        source,
+        offset=np.where(fresh[:, ch.PART_OF_CHANNEL], np.stack([offset, offset_speed]), old.offset),
+        arc=np.where(fresh[:, _ARMS, None], arcs, old.arc),
+        ends_s=np.where(fresh, np.stack([span, brake]), old.ends_s),
     )
+    return replace(state, source=source, age_s=np.where(fresh, 0.0, state.age_s))
 
 
-def advance_blend(state: Blend, value: Floats, dt_s: float) -> Blend:
+def advance_blend(state: Blend, values: Layered, dt_s: float) -> Blend:
     """The row now shown, the transitions' remains included."""
-    row, speed = compose(value, state.gate)
-    if np.count_nonzero(state.age_s < state.span_s):
-        ends = np.stack([state.span_s, state.brake_s])
-        powers = np.minimum(state.age_s / ends, 1.0)[..., None] ** _POWERS
-        curves = np.concatenate([powers[0] @ _VALUE, powers[1] @ _SLOPE], axis=-1)
-        curves[..., 1] /= state.span_s
-        curves[..., 3] /= state.brake_s
-        a, da, b, db = curves.transpose(2, 0, 1).take(ch.PART_OF_CHANNEL, axis=2)
-        row = row + state.offset * a + state.offset_speed * b
-        speed = speed + state.offset * da + state.offset_speed * db
-        _bow(state, row, speed)
-    return replace(state, row=row, speed=speed, age_s=state.age_s + np.float32(dt_s), known=np.ones_like(state.known))
+    source, age = state.source, state.age_s
+    row, speed = compose(values, source.gate)
+    if np.count_nonzero(age < source.ends_s[0]):
+        _add_remains(source, age, row, speed)
+    return Blend(source, age + dt_s, row, speed)
+
+
+def _add_remains(source: Source, age_s: Floats, row: Floats, speed: Floats) -> None:
+    """What is left of the transitions, added to row and speed.
+
+    Quintic Hermite curves on u in [0, 1], v = 1 − u: value 1 → 0 is v³·(1 + 3u + 6u²), slope 1 → 0 is v³·(u + 3u²);
+    whatever else they have vanishes at both ends. Their slopes are −30·u²v² and v²·(1 + 2u − 15u²).
+    """
+    u = np.minimum(age_s / source.ends_s, 1.0)
+    v = 1.0 - u
+    square = v * v
+    curves = np.empty((2, *u.shape), dtype=np.float32)
+    np.multiply(square * v, _VALUE[0] + u * (_VALUE[1] + u * _VALUE[2]), out=curves[0])
+    np.divide(square * (_SLOPE[0] + u * (_SLOPE[1] + u * _SLOPE[2])), source.ends_s, out=curves[1])
+    remains = (curves.take(ch.PART_OF_CHANNEL, axis=-1) * source.offset).sum(axis=1)
+    row += remains[0]
+    speed += remains[1]
+    # The hands' arcs: a bump that starts and ends with no speed and no acceleration.
+    u, v = u[0].take(_ARMS, axis=-1), v[0].take(_ARMS, axis=-1)
+    rest = u * v
+    square = rest * rest
+    height, slope = 64.0 * square * rest, 192.0 * square * (v - u) / source.ends_s[0].take(_ARMS, axis=-1)
+    row[:, ch.WRIST] += (source.arc * height[..., None]).reshape(-1, 6)
+    speed[:, ch.WRIST] += (source.arc * slope[..., None]).reshape(-1, 6)
 
 
 def _gates(bank: MotionBank, playback: Playback, owned: Bools, posture_layer: int) -> tuple[Floats, NDArray[np.intp]]:
@@ -183,19 +205,20 @@ def _gates(bank: MotionBank, playback: Playback, owned: Bools, posture_layer: in
     return gate[:, :, ch.PART_OF_CHANNEL], bank.frame[unit, np.arange(2)]
 
 
-def _in_frames(state: Blend, frame: NDArray[np.intp], contact_frames: Floats) -> tuple[Floats, Floats]:
-    """The last row and speed with the hands expressed in their new contact frames."""
-    row, speed = state.row, state.speed
-    if np.array_equal(frame, state.frame):
+def _in_frames(
+    row: Floats, speed: Floats, before: NDArray[np.intp], frame: NDArray[np.intp], contact_frames: Floats
+) -> tuple[Floats, Floats]:
+    """Row and speed with the hands expressed in their new contact frames; before, frame: (n, 2)."""
+    if np.array_equal(frame, before):
         return row, speed
     who = np.arange(len(frame))[:, None]
-    old, new = contact_frames[who, state.frame], contact_frames[who, frame]
+    old, new = contact_frames[who, before], contact_frames[who, frame]
     back = new[..., :3, :3].swapaxes(-1, -2)
     turn = back @ old[..., :3, :3]
     shift = back @ (old[..., :3, 3:] - new[..., :3, 3:])
     turn_quat = bl.from_matrix(turn)
     row, speed = row.copy(), speed.copy()
-    for array, moved in ((row, shift[..., 0]), (speed, np.float32(0.0))):
+    for array, moved in ((row, shift[..., 0]), (speed, 0.0)):
         wrist = array[:, ch.WRIST].reshape(-1, 2, 3)
         palm = array[:, ch.PALM].reshape(-1, 2, 4)
         array[:, ch.WRIST] = ((turn @ wrist[..., None])[..., 0] + moved).reshape(-1, 6)
@@ -228,16 +251,6 @@ def _arcs(row: Floats, goal: Floats, arc: Floats, frames: Floats) -> Floats:
     lift = np.where(crosses, EDGE_LIFT_M + np.clip(EDGE_CLEAR_M - height, 0.0, EDGE_CLEAR_M), 0.0)
     # The second row of a frame's rotation is model space's up as the frame sees it.
     return np.asarray(bow + lift[..., None] * frames[..., 1, :3], dtype=np.float32)
-
-
-def _bow(state: Blend, row: Floats, speed: Floats) -> None:
-    """Add the hands' arcs: a bump that starts and ends with no speed and no acceleration."""
-    span = state.span_s[:, _ARMS]
-    u = np.minimum(state.age_s[:, _ARMS] / span, 1.0)
-    rest = u * (1.0 - u)
-    height, slope = 64.0 * rest**3, 192.0 * rest * rest * (1.0 - 2.0 * u) / span
-    row[:, ch.WRIST] += (state.arc * height[..., None]).reshape(-1, 6)
-    speed[:, ch.WRIST] += (state.arc * slope[..., None]).reshape(-1, 6)
 
 
 def _spans(offset: Floats, base_s: Floats) -> Floats:

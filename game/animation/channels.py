@@ -4,8 +4,8 @@ A *row* is everything a unit says about one moment as one flat vector, so that m
 layering and transitions are the same few array operations on all of it:
 
 - ROTATION: 41 local quaternions (of REFERENCE, joint by joint),
+- PALM, WRIST: rotation and place of both hands in the unit's contact frame (table, head, chest or hips),
 - ROOT: translation of the hips, metres,
-- WRIST, PALM: place and rotation of both hands in the unit's contact frame (table, head, chest or hips),
 - POINTS: knuckle and finger tips of both hands in the hand's own frame, for collisions.
 """
 
@@ -26,10 +26,12 @@ __all__ = [
     "PARTS",
     "PART_OF_CHANNEL",
     "PART_OF_JOINT",
+    "PLACES",
     "POINTS",
     "POINTS_PER_HAND",
     "ROOT",
     "ROTATION",
+    "TURNS",
     "WRIST",
 ]
 
@@ -38,11 +40,16 @@ HANDS = ("left_hand", "right_hand")
 POINTS_PER_HAND = 4
 
 ROTATION = slice(0, 4 * JOINTS)
-ROOT = slice(ROTATION.stop, ROTATION.stop + 3)
-WRIST = slice(ROOT.stop, ROOT.stop + 2 * 3)
-PALM = slice(WRIST.stop, WRIST.stop + 2 * 4)
-POINTS = slice(PALM.stop, PALM.stop + 2 * POINTS_PER_HAND * 3)
+PALM = slice(ROTATION.stop, ROTATION.stop + 2 * 4)
+WRIST = slice(PALM.stop, PALM.stop + 2 * 3)
+ROOT = slice(WRIST.stop, WRIST.stop + 3)
+POINTS = slice(ROOT.stop, ROOT.stop + 2 * POINTS_PER_HAND * 3)
 CHANNELS = POINTS.stop
+
+TURNS = slice(ROTATION.start, PALM.stop)
+"""All quaternions of a row: the joints', then both palms'."""
+PLACES = slice(WRIST.start, ROOT.stop)
+"""All places but the points': wrists, then hips."""
 
 PARTS: tuple[str, ...] = ("spine", "head", "left_arm", "right_arm", "left_hand", "right_hand", "legs")
 """Body parts that own joints; masks and transitions work on these."""

@@ -40,16 +40,42 @@ SOFTNESS_M = 0.006
 """The push begins this far before the touch."""
 PASSES = 3
 """Each leaves about a third of what contacts that pull apart left inside."""
+_LEAST = np.float32((4.0 * SOFTNESS_M) ** 3 * 1e-15)
 DEEPEST_M = 0.12
 """Points further inside than this, by the shortest way, are left to the clip."""
 
 BODY_JOINTS = tuple(joint for joint, _, _ in BODY)
+_HANDS, _POINTS = 2, len(POINT_RADII)
 _INVERSE = np.array([np.divide(1.0, r) for _, _, r in BODY], dtype=np.float32)
-_SUMS = np.stack([np.ones_like(_INVERSE), _INVERSE * _INVERSE], axis=1)
 _MIDDLE = np.array([np.subtract(_REST[j], c) / r for j, c, r in BODY], dtype=np.float32)[..., None]
 _REACH = np.tile(POINT_RADII - TOLERANCE_M, 2)
+# Where the push's two ramps begin: their squares' difference over 4 × SOFTNESS_M is a smooth max(depth, 0).
+_RAMPS = np.stack([_REACH + SOFTNESS_M, _REACH - SOFTNESS_M])[:, None].astype(np.float32)
 _TALLEST = float(POINT_RADII.max()) + TABLE_CLEARANCE_M
-for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SUMS, _MIDDLE, _REACH):
+_TABLE_RADII = POINT_RADII + np.float32(TABLE_CLEARANCE_M)
+# (height, depth) of a point × _TABLE_SIDE + _TABLE_EDGE: how far up and how far back the table's surfaces are.
+_TABLE_SIDE = np.array([-1.0, 1.0], dtype=np.float32)
+_TABLE_EDGE = np.stack([TABLE_TOP_M + _TABLE_RADII, _TABLE_RADII - TABLE_BACK_Z_M], axis=-1).astype(np.float32)
+
+
+def _sums() -> Floats:
+    """(12, 18): squares of x, y, z in six unit spheres -> six squared norms, then six squared slopes."""
+    table = np.zeros((2, len(BODY), len(BODY), 3), dtype=np.float32)
+    for body in range(len(BODY)):
+        table[0, body, body] = 1.0
+        table[1, body, body] = _INVERSE[body] ** 2
+    return table.reshape(12, 18)
+
+
+def _by_hand() -> Floats:
+    """(14, 2): sums over the points of each hand."""
+    return np.repeat(np.eye(_HANDS, dtype=np.float32), _POINTS, axis=0)
+
+
+_SUMS, _BY_HAND = _sums(), _by_hand()
+for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SUMS, _MIDDLE, _REACH, _RAMPS, _BY_HAND, _TABLE_RADII):
+    _array.setflags(write=False)
+for _array in (_TABLE_SIDE, _TABLE_EDGE):
     _array.setflags(write=False)
 
 
@@ -62,74 +88,92 @@ def body_frames(frames: Floats) -> Floats:
 
 
 def body_distance(maps: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """Signed distance (n, 6, P) of points (n, P, 3) from each ellipsoid, metres, and its unit gradient (n, 6, 3, P)."""
+    """Signed distance (n, 6, P) of points (n, P, 4), homogeneous, from each ellipsoid, metres, and its unit gradient
+    (n, 6, 3, P)."""
     at, distance, slope = _distance(maps, points)
-    return distance, _away(maps, at, slope)
+    # maps hold rotation / radius, so their transpose takes position / radius to the gradient in model space.
+    away = maps[..., :3].swapaxes(-1, -2) @ (at.reshape(len(points), len(BODY), 3, -1) / slope[:, :, None])
+    return distance, np.asarray(away)
 
 
 def _distance(maps: Floats, points: Floats) -> tuple[Floats, Floats, Floats]:
-    """Points in the unit spheres' frames (n, 6, 3, P), distance and slope (n, 6, P)."""
-    at = maps[..., :3] @ points.swapaxes(-1, -2)[:, None] + maps[..., 3:]
-    square = at * at
-    norms = np.sqrt(_SUMS @ square + np.float32(1e-12))
-    norm, slope = norms[:, :, 0], norms[:, :, 1]
-    # Quílez' estimate for an ellipsoid; exact on the surface.
-    return at, norm * (norm - np.float32(1.0)) / slope, slope
+    """Points in the unit spheres' frames (n, 18, P), distance and slope (n, 6, P)."""
+    at = maps.reshape(len(maps), 18, 4) @ points.swapaxes(-1, -2)
+    squares = _SUMS @ (at * at)
+    squares += 1e-12
+    roots = np.sqrt(squares)
+    slope = roots[:, 6:]
+    # Quílez' estimate for an ellipsoid, norm · (norm − 1) / slope; exact on the surface.
+    return at, (squares[:, :6] - roots[:, :6]) / slope, slope
 
 
-def _away(maps: Floats, at: Floats, slope: Floats) -> Floats:
-    # maps hold rotation / radius, so their transpose takes position / radius to the gradient in model space.
-    return np.asarray(maps[..., :3].swapaxes(-1, -2) @ (at / slope[:, :, None]))
-
-
-def push_out(maps: Floats, points: Floats) -> Floats:
-    """points: (n, 2, 7, 3) of both hands in model space -> push (n, 2, 3), metres; 0 where all is clear."""
-    push = np.zeros((len(points), 2, 3), dtype=np.float32)
-    for _ in range(PASSES):
-        # Contacts that pull apart leave something inside: what is left is pushed again.
-        if not _push_from_body(maps, points + push[:, :, None], push):
-            break
-    if points[..., 1].min() < TABLE_TOP_M + _TALLEST:
-        up, back = _table(points)
-        push[..., 1] += np.maximum(up - np.maximum(push[..., 1], 0.0), 0.0)
-        push[..., 2] -= back
+def push_out(maps: Floats, points: Floats) -> Floats | None:
+    """points: (n, 14, 4) of the left, then the right hand, homogeneous, model space -> push (n, 2, 3), metres; None
+    where all is clear."""
+    push = _push_from_body(maps, points)
+    if points[..., 1].min() >= TABLE_TOP_M + _TALLEST:
+        return push
+    lift = _table(points.reshape(len(points), _HANDS, _POINTS, 4))
+    if lift is None:
+        return push
+    if push is None:
+        push = np.zeros((len(points), _HANDS, 3), dtype=np.float32)
+    push[..., 1] += np.maximum(lift[..., 0] - np.maximum(push[..., 1], 0.0), 0.0)
+    push[..., 2] -= lift[..., 1]
     return push
 
 
-def _push_from_body(maps: Floats, points: Floats, push: Floats) -> bool:
-    """Add to push (n, 2, 3) what the points' contacts with the body ask for; False where nothing is near it."""
+def _push_from_body(maps: Floats, points: Floats) -> Floats | None:
+    """Away from the body; None where nothing is near it."""
     n = len(points)
-    at, distance, slope = _distance(maps, points.reshape(n, 14, 3))
-    depth = _REACH - distance
-    if depth.max() <= -SOFTNESS_M:
-        return False
-    depth = _soft(depth)
-    away = _away(maps, at, slope)
-    cubed = (depth * depth * depth).reshape(n, len(BODY), 2, 7)
-    # The deepest contact leads, others join in as they come near: no switching.
-    weight = cubed / np.maximum(cubed.sum(axis=(1, 3), keepdims=True), np.float32(1e-15))
-    amount = (weight * depth.reshape(cubed.shape))[:, :, None] * away.reshape(n, len(BODY), 3, 2, 7)
-    push += amount.sum(axis=(1, 4)).swapaxes(-1, -2)
-    return True
+    push = np.zeros((n, _HANDS, 3), dtype=np.float32)
+    summing: Floats | None = None
+    for _ in range(PASSES):
+        # Contacts that pull apart leave something inside: what is left is pushed again.
+        at, distance, slope = _distance(maps, points)
+        ramps = np.maximum(_RAMPS - distance[:, None], 0.0)
+        # The second ramp begins after the first.
+        if not np.count_nonzero(ramps):
+            break
+        if summing is None:
+            summing = _summing(maps)
+            points = points.copy()
+        ramps *= ramps
+        depth = ramps[:, 0] - ramps[:, 1]
+        square = depth * depth
+        # The deepest contact leads, others join in as they come near: no switching. Their weights are cubes of the
+        # depth; the pushes are added up in the ellipsoids' frames, for each hand, and then turned to model space.
+        parts = np.empty((n, 24, 14), dtype=np.float32)
+        pushes = at.reshape(n, 6, 3, 14) * (square * square / slope)[:, :, None]
+        parts[:, :18] = pushes.reshape(n, 18, 14)
+        np.multiply(square, depth, out=parts[:, 18:])
+        total = (parts @ _BY_HAND).swapaxes(-1, -2) @ summing
+        step = total[..., :3] / np.maximum(total[..., 3:], _LEAST)
+        push += step
+        points.reshape(n, _HANDS, _POINTS, 4)[..., :3] += step[:, :, None]
+    return None if summing is None else push
 
 
-def _soft(depth: Floats) -> Floats:
-    """Smooth max(depth, 0): starts SOFTNESS_M before the touch."""
-    s = np.float32(SOFTNESS_M)
-    ramp = np.clip(depth + s, 0.0, 2.0 * s)
-    return np.asarray(ramp * ramp / (4.0 * s) + np.maximum(depth - s, 0.0))
+def _summing(maps: Floats) -> Floats:
+    """(n, 24, 4): from 18 sums of pushes in the ellipsoids' frames and 6 of weights to push and weight. Depths come
+    4 × SOFTNESS_M times too large."""
+    table = np.zeros((len(maps), 24, 4), dtype=np.float32)
+    np.divide(maps.reshape(len(maps), 18, 4)[..., :3], 4.0 * SOFTNESS_M, out=table[:, :18, :3])
+    table[:, 18:, 3] = 1.0
+    return table
 
 
-def _table(points: Floats) -> tuple[Floats, Floats]:
-    """(n, 2) how far up, and how far back, the deepest point of each hand must go to be clear of the table."""
-    y, z = points[..., 1], points[..., 2]
-    radius = POINT_RADII + np.float32(TABLE_CLEARANCE_M)
-    up = np.clip(TABLE_TOP_M + radius - y, 0.0, None)
-    back = np.clip(z - (TABLE_BACK_Z_M - radius), 0.0, None)
-    inside = (up > 0.0) & (back > 0.0) & (z < TABLE_FRONT_Z_M + 0.04) & (np.minimum(up, back) < DEEPEST_M)
+def _table(points: Floats) -> Floats | None:
+    """points: (n, 2, 7, 4) -> (n, 2, 2) how far up, and how far back, the deepest point of each hand must go to be
+    clear of the table; None where all are."""
+    depth = np.maximum(points[..., 1:3] * _TABLE_SIDE + _TABLE_EDGE, 0.0)
+    short = np.minimum(depth[..., 0], depth[..., 1])
+    inside = (short > 0.0) & (short < DEEPEST_M) & (points[..., 2] < TABLE_FRONT_Z_M + 0.04)
+    if not np.count_nonzero(inside):
+        return None
     # Near the edge the short way out is backward, elsewhere upward; where both are as short, both are gone.
-    share = 2.0 * back * back / np.maximum(back * back + up * up, np.float32(1e-12))
-    return (
-        np.where(inside, up * np.minimum(share, 1.0), 0.0).max(axis=-1),
-        np.where(inside, back * np.minimum(2.0 - share, 1.0), 0.0).max(axis=-1),
-    )
+    square = depth * depth
+    share = 2.0 * square[..., 1] / np.maximum(square[..., 0] + square[..., 1], 1e-12)
+    depth[..., 0] *= np.minimum(share, 1.0)
+    depth[..., 1] *= np.minimum(2.0 - share, 1.0)
+    return np.asarray((depth * inside[..., None]).max(axis=2))

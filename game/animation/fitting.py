@@ -25,6 +25,7 @@ from game.animation import bilinear as bl
 from game.animation import figure, limbs
 from game.animation.body_size import REGIONS, BodySize
 from game.animation.collision import BODY, TABLE_BACK_Z_M
+from game.animation.placing import place_limbs
 from game.animation.pose import Pose
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
@@ -74,8 +75,6 @@ def _regions() -> tuple[Floats, Floats]:
 
 
 _CENTRES, _RADII = _regions()
-_ENDS = figure.ENDS.reshape(-1)
-_HINGE = figure.HINGE[..., None]
 _PALM = np.array([[_PALM_M, 0.0, 0.0], [-_PALM_M, 0.0, 0.0]], dtype=np.float32)[..., None]
 _ARMS = tuple(figure.WHERE[f"{s}UpperArm"] for s in ("left", "right"))
 _AT = np.array([(figure.WHERE[r],) * 2 for r in REGIONS] + [_ARMS, _ARMS])
@@ -96,7 +95,7 @@ _LIMITS = np.array(
 )
 _OUTSIDE = _LIMITS[:, :1].astype(np.float32)
 _STEEP = (1.0 / (_LIMITS[:, 1:] - _LIMITS[:, :1])).astype(np.float32)
-for _array in (_CENTRES, _RADII, _ENDS, _HINGE, _PALM, _AT, _FLAT, _TABLE, _SUM, _ONES, _LIMITS, _OUTSIDE, _STEEP):
+for _array in (_CENTRES, _RADII, _PALM, _AT, _FLAT, _TABLE, _SUM, _ONES, _LIMITS, _OUTSIDE, _STEEP):
     _array.setflags(write=False)
 
 
@@ -117,8 +116,7 @@ class Fitting:
     hips: Floats
     leg: float
     hand: float
-    offset: Floats  # (2, 15, 3) of the reference and of this body
-    end_offset: Floats  # (2, 4, 3)
+    offset: Floats  # (2, 19, 3) of the reference and of this body
     limbs: limbs.Limbs
     feet: Floats  # (2, 2, 3) ankles at rest: the reference's, this body's
     centre: Floats  # (2, 6, 2, 3) of the places a hand can be in, in their frames
@@ -131,36 +129,24 @@ class Fitting:
         root = pose.root.astype(np.float32)
         shift = root - _REST["hips"].astype(np.float32)
         roots = np.concatenate([root, self.hips + shift * np.float32(self.leg)])
-        both = self.offset, self.end_offset
-        offset, end_offset = both if n == 1 else (np.repeat(rows, n, axis=0) for rows in both)
-        joints, ends = figure.figure_matrices(np.concatenate([rotation, rotation]), roots, offset, end_offset)
-        lower = joints[:n].take(figure.LOWER, axis=1)[..., :3, :3]
-        turn = lower @ bl.rotation_matrix(rotation.take(figure.ENDS[2], axis=1))
-        self._place(rotation, joints, ends, turn)
+        offset = self.offset if n == 1 else np.repeat(self.offset, n, axis=0)
+        local = bl.affine(rotation.take(figure.FIGURE, axis=1))
+        joints = np.concatenate([local, local])
+        joints[:, :, :3, 3] = offset
+        joints[:, 0, :3, 3] = roots
+        figure.figure_matrices(joints)
+        self._place(rotation, joints[:n], joints[n:])
         return Pose(rotation, roots[n:], pose.gaze, pose.blink, pose.breath)
 
-    def _place(self, rotation: Floats, joints: Floats, ends: Floats, turn: Floats) -> None:
+    def _place(self, rotation: Floats, reference: Floats, mine: Floats) -> None:
         """Arms and legs of this body to where they belong: rewrites the twelve joints of the limbs in rotation."""
-        n = len(rotation)
-        reference, mine = joints[:n], joints[n:]
-        reach = turn[:, :2] @ _PALM
-        palm = ends[:n, :2] + reach[..., 0]
-        wanted = np.empty((n, 4, 3), dtype=np.float32)
-        wanted[:, :2] = self._palms(reference, mine, palm) - np.float32(self.hand) * reach[..., 0]
-        wanted[:, 2:] = self.feet[1] + np.float32(self.leg) * (ends[:n, 2:] - self.feet[0])
-        bones = mine.take(figure.BONES, axis=1)
-        turned = bones[..., :3, :3]
-        points = np.empty((n, 4, 4, 3), dtype=np.float32)
-        points[:, :2] = bones[..., :3, 3].reshape(n, 2, 4, 3)
-        points[:, 2], points[:, 3] = ends[n:], wanted
-        fix = limbs.solve_limbs(self.limbs, points, (turned[:, :4] @ _HINGE)[..., 0])
-        model = np.empty((n, 12, 3, 3), dtype=np.float32)
-        np.matmul(bl.rotation_matrix(fix).reshape(n, 8, 3, 3), turned, out=model[:, :8])
-        model[:, 8:] = turn
-        above = np.empty_like(model)
-        above[:, :4] = mine.take(figure.SHOULDERS, axis=1)[..., :3, :3]
-        above[:, 4:] = model[:, :8]
-        rotation[:, _ENDS] = bl.from_matrix(above.swapaxes(-1, -2) @ model)
+        goal = reference.take(figure.BONES[12:], axis=1)
+        place = goal[..., :3, 3]
+        reach = (goal[:, :2, :3, :3] @ _PALM)[..., 0]
+        palm = place[:, :2] + reach
+        place[:, :2] = self._palms(reference, mine, palm) - np.float32(self.hand) * reach
+        place[:, 2:] = self.feet[1] + np.float32(self.leg) * (place[:, 2:] - self.feet[0])
+        place_limbs(self.limbs, rotation, mine.take(figure.BONES, axis=1), goal)
 
     def _palms(self, reference: Floats, mine: Floats, palm: Floats) -> Floats:
         """Where the palms (n, 2, 3) of the reference are on this body.
@@ -233,7 +219,6 @@ def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fittin
         rest,
         where["hips"],
         offset,
-        both[:, ends[2]],
         np.array([[w[f"{s}Foot"] for s in ("left", "right")] for w in (_REST, where)]),
         centre,
         radius,
@@ -241,14 +226,13 @@ def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fittin
     ready = [np.ascontiguousarray(a, dtype=np.float32) for a in arrays]
     for array in ready:
         array.setflags(write=False)
-    rest_, hips, offset_, end_offset, feet, centre_, radius_ = ready
+    rest_, hips, offset_, feet, centre_, radius_ = ready
     return Fitting(
         rest=rest_,
         hips=hips,
         leg=float(leg.mean()),
         hand=hand,
         offset=offset_,
-        end_offset=end_offset,
         limbs=_limbs(lengths[1]),
         feet=feet,
         centre=centre_,

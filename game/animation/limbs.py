@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
 
-__all__ = ["REACH_FULL", "REACH_SOFT", "Limbs", "limbs_of", "solve_limbs"]
+__all__ = ["HINGE_WEIGHT_M", "REACH_FULL", "REACH_SOFT", "Limbs", "limbs_of", "solve_limbs"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -22,27 +22,31 @@ REACH_SOFT, REACH_FULL = 0.93, 0.985
 """Shares of an arm's length between which its reach is softly clamped (MOTION.md, contacts)."""
 STRAIGHT_SOFT, STRAIGHT_FULL = 0.999, 0.9998
 """The same for legs, which stand straight at rest."""
-_HINGE_SHARE = 1.5e-3
-"""m²: how much of the rest hinge is added to the bent limb's own normal, which vanishes in a straight limb."""
+HINGE_WEIGHT_M = 1.5e-3
+"""How much of the rest hinge is added to the bent limb's own normal (metres, upper bone × direction), which vanishes
+in a straight limb."""
 
-# V = _WAYS @ points: upper bone, lower bone, present way, wanted way from the points root, joint, end, target.
-_WAYS = np.array([[-1, 1, 0, 0], [0, -1, 1, 0], [-1, 0, 1, 0], [-1, 0, 0, 1]], dtype=np.float32)
-# v @ _SKEW is the matrix that takes the cross product with v.
-_SKEW = np.array([[0, 0, 0, 0, 0, -1, 0, 1, 0], [0, 0, 1, 0, 0, 0, -1, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0]], np.float32)
+# Cross products: both factors' components in the orders y z x and z x y.
+_CYCLES = np.array([1, 2, 0, 2, 0, 1])
 # Sums over the last axis as products: a reduction of three numbers costs NumPy three times as much.
 _SUM = np.ones(3, dtype=np.float32)
 _SUM_TO_COLUMN = np.ones((3, 1), dtype=np.float32)
-for _table in (_WAYS, _SKEW, _SUM, _SUM_TO_COLUMN):
+# From the interior angles (root before and after, joint before and after) to half the turns of the upper bone, of the
+# joint, and of the lower bone, which does both: all about the limb's normal.
+_HALVES = np.array([[-0.5, 0.5, 0, 0], [0, 0, -0.5, 0.5], [-0.5, 0.5, -0.5, 0.5]], dtype=np.float32)
+for _table in (_CYCLES, _SUM, _SUM_TO_COLUMN, _HALVES):
     _table.setflags(write=False)
 
 
 @dataclass(frozen=True, eq=False)
 class Limbs:
-    """Constants of K limbs. knee, room: (K,) where the clamp of the reach begins and how far it lets through, metres.
-    For the law of cosines over (root, joint) × before and after: see _angles."""
+    """Constants of K limbs. knee, room: (K,) where the clamp of the reach begins and how far it lets through, metres;
+    steep: −1 / room. least: (K,) shortest reach. For the law of cosines over (root, joint) × before and after: square,
+    (2, K), and divide, (2, 1, K): see _angles."""
 
     knee: Floats
     room: Floats
+    steep: Floats
     least: Floats
     square: Floats
     divide: Floats
@@ -56,53 +60,56 @@ def limbs_of(upper_m: Floats, lower_m: Floats, soft: NDArray[np.bool_]) -> Limbs
     return Limbs(
         knee=knee.astype(np.float32),
         room=(most - knee).astype(np.float32),
+        steep=(-1.0 / (most - knee)).astype(np.float32),
         least=(np.abs(upper_m - lower_m) + 1e-3).astype(np.float32),
         square=np.stack([upper_m**2 - lower_m**2, upper_m**2 + lower_m**2]).astype(np.float32),
-        divide=np.stack([0.5 / upper_m, -0.5 / (upper_m * lower_m)]).astype(np.float32),
+        divide=np.stack([0.5 / upper_m, -0.5 / (upper_m * lower_m)])[:, None].astype(np.float32),
     )
 
 
-def solve_limbs(limbs: Limbs, points: Floats, hinge: Floats) -> Floats:
+def solve_limbs(limbs: Limbs, points: Floats, hinge: Floats) -> tuple[Floats, Floats]:
     """Move the ends of limbs to targets.
 
     points: (n, 4, K, 3) root, joint and end as they are (shoulder, elbow, wrist), and the target; hinge: (n, K, 3)
-    unit axis that bends a straight limb. Model space, metres.
-    -> (n, 2, K, 4) rotations in model space that take the upper and the lower bone to their new directions.
+    axis that bends a straight limb, as long as it shall count. Model space, metres.
+    -> (n, 2, K, 4) rotations in model space that take the upper and the lower bone to their new directions, and
+    (n, K, 4) the joint's own share in the latter: the lower bone's is the upper bone's, and before it this.
     """
     n, _, k, _ = points.shape
-    ways = (_WAYS @ points.reshape(n, 4, 3 * k)).reshape(n, 4, k, 3)
-    far = ways[:, 2:]
-    reach = np.sqrt((far * far) @ _SUM) + np.float32(1e-6)
-    along = far / reach[..., None]
+    # Upper bone, then the present and the wanted way to the end.
+    ways = points[:, 1:] - points[:, :1]
+    far = ways[:, 1:]
+    reach = np.sqrt((far * far) @ _SUM)
+    reach += 1e-6
+    far /= reach[..., None]
     # Both reaches as the law of cosines sees them; the wanted one is clamped.
-    over = np.maximum(reach[:, 1] - limbs.knee, np.float32(0.0)) / limbs.room
-    wanted = np.minimum(reach[:, 1], limbs.knee) - limbs.room * np.expm1(-over)
-    np.maximum(wanted, limbs.least, out=reach[:, 1])
-    angles = _angles(limbs, reach)
-    turn = np.empty((n, 3, k), dtype=np.float32)
-    np.subtract(angles[:, :, 1], angles[:, :, 0], out=turn[:, :2])
-    # The lower bone turns with the upper one and about the joint, both about the limb's normal.
-    np.add(turn[:, 0], turn[:, 1], out=turn[:, 1])
-    turn = turn[:, :2] * np.float32(0.5)
-    crosses = (along[:, 0] @ _SKEW).reshape(n, k, 3, 3) @ _columns(ways[:, 0], along[:, 1])
-    normal = crosses[..., 0] + np.float32(_HINGE_SHARE) * hinge
-    normal /= np.sqrt((normal * normal) @ _SUM_TO_COLUMN) + np.float32(1e-9)
-    opened = np.empty((n, 2, k, 4), dtype=np.float32)
-    np.multiply(normal[:, None], np.sin(turn)[..., None], out=opened[..., :3])
-    np.cos(turn, out=opened[..., 3])
+    wanted = reach[:, 1]
+    clamped = np.expm1(np.maximum(wanted - limbs.knee, 0.0) * limbs.steep)
+    clamped *= limbs.room
+    np.maximum(np.minimum(wanted, limbs.knee) - clamped, limbs.least, out=wanted)
+    half = _HALVES @ _angles(limbs, reach).reshape(n, 4, k)
+    crosses = _crosses(ways)
+    normal = crosses[:, 0]
+    normal += hinge
+    normal /= np.sqrt((normal * normal) @ _SUM_TO_COLUMN) + 1e-9
+    opened = np.empty((n, 3, k, 4), dtype=np.float32)
+    np.multiply(normal[:, None], np.sin(half)[..., None], out=opened[..., :3])
+    np.cos(half, out=opened[..., 3])
     # Opening leaves the end on the way where it was: what is left is to swing that way to the wanted one.
     swing = np.empty((n, k, 4), dtype=np.float32)
-    swing[..., :3] = crosses[..., 1]
+    swing[..., :3] = crosses[:, 1]
     # Just above 1: opposite directions leave a rotation to normalise.
-    np.add((along[:, 0] * along[:, 1]) @ _SUM, np.float32(1.0001), out=swing[..., 3])
-    return bl.multiply(bl.normalize(swing)[:, None], opened)
+    np.add((far[:, 0] * far[:, 1]) @ _SUM, 1.0001, out=swing[..., 3])
+    return bl.multiply(bl.normalize(swing)[:, None], opened[:, ::2]), opened[:, 1]
 
 
-def _columns(a: Floats, b: Floats) -> Floats:
-    """Two vectors (n, K, 3) side by side, (n, K, 3, 2)."""
-    both = np.empty((*a.shape, 2), dtype=np.float32)
-    both[..., 0], both[..., 1] = a, b
-    return both
+def _crosses(ways: Floats) -> Floats:
+    """ways: (n, 3, K, 3) -> (n, 2, K, 3) the second across the first and across the third."""
+    cycles = ways.take(_CYCLES, axis=-1)
+    a, b = cycles[:, 1:2], cycles[:, ::2]
+    product = a[..., :3] * b[..., 3:]
+    product -= a[..., 3:] * b[..., :3]
+    return np.asarray(product)
 
 
 def _angles(limbs: Limbs, reach: Floats) -> Floats:
@@ -111,7 +118,7 @@ def _angles(limbs: Limbs, reach: Floats) -> Floats:
     cosine = np.empty((len(reach), 2, *reach.shape[1:]), dtype=np.float32)
     np.divide(square + limbs.square[0], reach, out=cosine[:, 0])
     np.subtract(square, limbs.square[1], out=cosine[:, 1])
-    cosine *= limbs.divide[:, None]
-    np.minimum(cosine, np.float32(1.0), out=cosine)
+    cosine *= limbs.divide
+    np.minimum(cosine, 1.0, out=cosine)
     np.maximum(cosine, np.float32(-1.0), out=cosine)
-    return np.asarray(np.arccos(cosine))
+    return np.asarray(np.arccos(cosine, out=cosine))

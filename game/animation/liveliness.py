@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import channels as ch
+from game.core.humanoid import REFERENCE
 from game.core.springs import half_life_to_damping
 from game.embos.draws import character_keys, uniform
 
@@ -24,7 +25,6 @@ __all__ = [
     "Gaze",
     "Life",
     "LifeConfig",
-    "additive_slice",
     "advance_life",
     "look",
     "start_gaze",
@@ -78,15 +78,12 @@ class LifeConfig:
     mood_half_life_s: float = 0.14
 
     @cached_property
-    def per_second(self) -> Floats:
-        """(7, 5) how fast Life.timers run in each emotion."""
+    def rates(self) -> Floats:
+        """(7, 8) how fast Life.timers run in each emotion; breath and sway that are added, and the tempo."""
         still = np.ones(7)
-        return np.stack([self.sway_pace, self.breath_per_min / 60.0, -still, -still, still], axis=1)
-
-    @cached_property
-    def amounts(self) -> Floats:
-        """(7, 3) breath and sway that are added, and the tempo."""
-        return np.stack([self.breath_depth * self.breath_share, self.sway * self.sway_share, self.tempo], axis=1)
+        per_second = (self.sway_pace, self.breath_per_min / 60.0, -still, -still, still)
+        amounts = (self.breath_depth * self.breath_share, self.sway * self.sway_share, self.tempo)
+        return np.stack([*per_second, *amounts], axis=1)
 
     @cached_property
     def eye_scale(self) -> Floats:
@@ -132,19 +129,18 @@ _EFFECT_RAD: dict[str, dict[str, tuple[float, float, float]]] = {
     "nod": {"neck": (0.4, 0, 0), "head": (0.6, 0, 0)},
 }
 _EFFECT_M = {"right": (0.006, 0, 0), "forward": (0, 0, 0.004)}
-_ADDITIVE_NAMES = ("hips", "spine", "chest", "neck", "head", "leftShoulder", "rightShoulder")
 
 
 def _effect_table() -> Floats:
-    """(cues, 7·3 + 3): cue -> half angles of ADDITIVE_JOINTS, then the root's shift."""
-    table = np.zeros((len(_CUES), 3 * len(_ADDITIVE_NAMES) + 3))
+    """(cues, CHANNELS): cue -> half angles of the joints (vector parts of their quaternions) and the root's shift."""
+    table = np.zeros((len(_CUES), ch.CHANNELS), dtype=np.float32)
     for row, cue in enumerate(_CUES):
         name, weight = (cue[:-1], _SWAY_WEIGHT[int(cue[-1])]) if cue[-1].isdigit() else (cue, 1.0)
         for effects, scale in ((_EFFECT_DEG, np.pi / 360.0), (_EFFECT_RAD, 0.5)):
             for joint, angles in effects.get(name, {}).items():
-                at = 3 * _ADDITIVE_NAMES.index(joint)
+                at = ch.ROTATION.start + 4 * REFERENCE.index[joint]
                 table[row, at : at + 3] = np.multiply(angles, scale * weight)
-        table[row, -3:] = np.multiply(_EFFECT_M.get(name, (0.0, 0.0, 0.0)), weight)
+        table[row, ch.ROOT] = np.multiply(_EFFECT_M.get(name, (0.0, 0.0, 0.0)), weight)
     return table
 
 
@@ -223,30 +219,32 @@ def advance_life(
 ) -> tuple[Life, Floats, Floats, Floats]:
     """shares: (n, 7) emotion, summing to 1; mood: (n, 2) whether the target is looked at and whether one speaks, 0..1.
 
-    -> state; (n, 24) half angles of ADDITIVE_JOINTS and the root's shift; lungs (n,) 0..1; blink (n,) 0..1.
+    -> state; (n, CHANNELS) what is added to the row; lungs (n,) 0..1; blink (n,) 0..1.
     """
-    timers = state.timers + (shares @ config.per_second) * dt_s
+    rates = shares @ config.rates
+    timers = state.timers + rates[:, :5] * dt_s
     dart, counts = state.dart, state.counts
     if np.count_nonzero(gaze.leap):
         timers[:, _BLINK_LEFT] = np.where(gaze.leap, np.minimum(timers[:, _BLINK_LEFT], 0.0), timers[:, _BLINK_LEFT])
     if timers[:, _DART_LEFT : _BLINK_LEFT + 1].min() <= 0.0:
         dart, counts = _draw(config, state, shares, timers)
-    depth, sway, tempo = (shares @ config.amounts).T
+    depth, sway, tempo = rates[:, 5], rates[:, 6:7], rates[:, 7:]
     mood = state.mood + (mood - state.mood) * (1.0 - 2.0 ** (-dt_s / config.mood_half_life_s))
     wanted = gaze.aim.take(_HEAD_CUES, axis=1) * (config.head_shares * mood[:, :1])
     # A critically damped spring, exact in dt (game.core.springs), at the emotion's tempo.
-    stiffness = config.head_stiffness / tempo[:, None]
+    stiffness = config.head_stiffness / tempo
+    speed = state.head[:, 1]
     away = state.head[:, 0] - wanted
-    push = state.head[:, 1] + away * stiffness
-    decay = np.exp(-stiffness * dt_s)
+    push = (speed + away * stiffness) * dt_s
+    decay = np.exp(stiffness * -dt_s)
     head = np.empty_like(state.head)
-    head[:, 0] = wanted + decay * (away + push * dt_s)
-    head[:, 1] = decay * (state.head[:, 1] - push * stiffness * dt_s)
+    np.add(wanted, decay * (away + push), out=head[:, 0])
+    np.multiply(decay, speed - push * stiffness, out=head[:, 1])
     waves = np.sin(timers[:, :1] * _SWAY_RATE + state.phase)
     lungs = np.interp(timers[:, _BREATHS] % 1.0, _BREATH_AT, _BREATH)
-    cues = np.empty((len(timers), len(_CUES)))
+    cues = np.empty((len(timers), len(_CUES)), dtype=np.float32)
     cues[:, 0] = lungs * depth
-    np.multiply(waves, sway[:, None], out=cues[:, 1:13])
+    cues[:, 1:13] = waves * sway
     cues[:, 13:16] = head[:, 0]
     cues[:, 16] = mood[:, 1] * waves[:, _NOD_WAVE] * config.nod_rad
     blink = np.interp(timers[:, _BLINK_AGE] / config.blink_s, _BLINK_AT, _BLINK_SHUT)
@@ -256,22 +254,23 @@ def advance_life(
 def look(
     config: LifeConfig, life: Life, gaze: Gaze, target: Floats, head: Floats, chest: Floats, eyes: Floats, dt_s: float
 ) -> Gaze:
-    """Eyes to the target (n, 3) as far as they go. head, chest: (n, 4, 4) matrices; eyes: (3,) in the head's frame."""
-    turn = head[:, :3, :3]
+    """Eyes to the target (n, 3) as far as they go. head, chest: (n, 4, 4) matrices; eyes: (4,) in the head's frame,
+    homogeneous."""
     way = np.empty((len(target), 2, 3))
-    np.subtract(target, head[:, :3, 3] + turn @ eyes, out=way[:, 0])
-    way[:, 1] = (way[:, :1] @ turn)[:, 0]
+    np.subtract(target, (head @ eyes)[:, :3], out=way[:, 0])
+    np.matmul(way[:, :1], head[:, :3, :3], out=way[:, 1:])
+    right, ahead = way[..., 0], way[..., 2]
     angle = np.empty((len(target), 2, 2))
-    np.arctan2(way[..., 0], way[..., 2], out=angle[..., 0])
-    np.arctan2(way[..., 1], np.hypot(way[..., 0], way[..., 2]), out=angle[..., 1])
+    np.arctan2(right, ahead, out=angle[..., 0])
+    np.arctan2(way[..., 1], np.hypot(right, ahead), out=angle[..., 1])
     attention = life.mood[:, :1]
-    wanted = angle[:, 1] * (config.eye_scale * attention) + life.dart
+    wanted = angle[:, 1] * (config.eye_scale * attention)
+    wanted += life.dart
     if attention.min() < 0.999:
         # Where a unit's own gaze leads, the eyes go a little further the way the head has turned.
-        ahead = (chest[:, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
-        wanted[:, 0] += (1.0 - attention[:, 0]) * np.arctan2(ahead[:, 0], ahead[:, 2]) * (0.5 * config.eye_scale[0])
-    wanted = np.minimum(np.maximum(wanted, -1.0), 1.0)
-    step = wanted - gaze.eye
+        lead = (chest[:, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
+        wanted[:, 0] += (1.0 - attention[:, 0]) * np.arctan2(lead[:, 0], lead[:, 2]) * (0.5 * config.eye_scale[0])
+    step = np.minimum(np.maximum(wanted, -1.0), 1.0) - gaze.eye
     eye = gaze.eye + step * (1.0 - 2.0 ** (-dt_s / config.eye_half_life_s))
     return Gaze(eye, angle[:, 0], np.abs(step).max(axis=1) > _SHIFT)
 
@@ -297,9 +296,3 @@ def _draw(config: LifeConfig, state: Life, shares: Floats, timers: Floats) -> tu
         timers[due, _BLINK_AGE] = 0.0
         counts[due, 1] += 1
     return dart, counts
-
-
-def additive_slice() -> NDArray[np.intp]:
-    """Row channels of the vector parts of ADDITIVE_JOINTS, then of the root: where advance_life's output is added."""
-    vector = (4 * ch.ADDITIVE_JOINTS[:, None] + np.arange(3)).reshape(-1)
-    return np.concatenate([vector, np.arange(ch.ROOT.start, ch.ROOT.stop)])

@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
-from game.animation import blending, collision, figure, limbs, liveliness, playback
+from game.animation import blending, contacts, figure, limbs, liveliness, playback
 from game.animation import channels as ch
 from game.animation.motion_bank import KnownUnits, MotionBank, bake
+from game.animation.placing import place_limbs
 from game.animation.pose import Pose
 from game.core.emotion_space import EMOTIONS
 from game.core.humanoid import HEAD_CENTRE_OFFSET
-from game.core.springs import critical_spring
 from game.embos import LAYERS, Decisions, UnitLibrary
 from game.embos.mixing import RADIUS
 
@@ -34,22 +34,12 @@ MODES: tuple[Mode, ...] = ("full", "gestures", "body", "face")
 """What of the behaviour is shown. ``gestures``: posture and mannerism stand at neutral; ``body``: everything the
 body does (the face is another stage's); ``face``: the body stands still at neutral."""
 
-PUSH_HALF_LIFE_S = 0.025
-"""How softly body and table let go of a hand."""
-
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
-_NEUTRAL.setflags(write=False)
-_ADDED = liveliness.additive_slice()
-_EYES = HEAD_CENTRE_OFFSET.astype(np.float32)
-_PALM_POINT = np.array([[0.05, 0.0, 0.0], [-0.05, 0.0, 0.0]], dtype=np.float32)
+_EYES = np.append(HEAD_CENTRE_OFFSET, 1.0).astype(np.float32)
 _LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array([True, True, False, False]))
-_HINGE = figure.HINGE[..., None]
-_FLAT = np.eye(3, dtype=np.float32)
-_FRAMES = [figure.WHERE[name] for name in ch.CONTACT_FRAMES[1:]]
-_BODY = np.array([figure.WHERE[name] for name in collision.BODY_JOINTS])
-_HEAD, _CHEST = figure.WHERE["head"], figure.WHERE["chest"]
-_ENDS = figure.ENDS.reshape(-1)
-for _array in (_ADDED, _BODY, _EYES, _PALM_POINT, _FLAT):
+_BONES = contacts.slot("hips") + figure.BONES
+_HEAD, _CHEST = contacts.slot("head"), contacts.slot("chest")
+for _array in (_NEUTRAL, _EYES, _BONES):
     _array.setflags(write=False)
 
 
@@ -68,16 +58,15 @@ class PerformSignal:
 
 @dataclass(frozen=True, eq=False)
 class PerformerState:
-    """Where n characters stand; every tick makes a new one. contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES
-    as last shown; push, push_speed: (n, 2, 3) how far the hands are held off, metres."""
+    """Where n characters stand; every tick makes a new one. matrices: (n, contacts.SLOTS, 4, 4) of the
+    body as last shown; push: (n, 2, 2, 3) how far the hands are held off, and how fast that changes, metres."""
 
     playback: playback.Playback
     blend: blending.Blend
     life: liveliness.Life
     gaze: liveliness.Gaze
-    contact_frames: Floats
+    matrices: Floats
     push: Floats
-    push_speed: Floats
 
     def __len__(self) -> int:
         return len(self.push)
@@ -112,16 +101,14 @@ class Performer:
 
     def start(self, n: int, seed: int = 0, first: int = 0) -> PerformerState:
         """n characters before their first tick; character first + i moves the same in any company."""
-        frames = np.zeros((n, len(ch.CONTACT_FRAMES), 4, 4), dtype=np.float32)
-        frames[:] = np.eye(4, dtype=np.float32)
+        matrices = np.tile(np.eye(4, dtype=np.float32), (n, contacts.SLOTS, 1, 1))
         return PerformerState(
             playback=playback.start(n, len(self.layers)),
             blend=blending.start_blend(n, len(self.layers)),
             life=liveliness.start_life(n, seed, first),
             gaze=liveliness.start_gaze(n),
-            contact_frames=frames,
-            push=np.zeros((n, 2, 3)),
-            push_speed=np.zeros((n, 2, 3)),
+            matrices=matrices,
+            push=np.zeros((n, 2, 2, 3), dtype=np.float32),
         )
 
     def adopt(self, state: PerformerState) -> PerformerState:
@@ -138,22 +125,20 @@ class Performer:
         emotion = _shares(signal)
         play, blend = self._layers(state, decisions, signal, emotion, dt_s)
         life, row, lungs, blink = self._enliven(state, play, blend, signal, emotion, dt_s)
-        rotation, root = self._normal(row)
-        joints, ends = figure.figure_matrices(rotation, root)
-        contact_frames = state.contact_frames.copy()
-        contact_frames[:, 1:] = joints.take(_FRAMES, axis=1)
-        hand = self._hands(row, blend, contact_frames)
-        push, push_speed = state.push, state.push_speed
+        n = len(row)
+        turns = bl.normalize(row[:, ch.TURNS].reshape(n, -1, 4))
+        matrices = contacts.body_matrices(turns, row[:, ch.PLACES])
+        goal, push = contacts.goals(matrices, blend.source.frame), state.push
         if self.collide:
-            wanted = self._clearance(joints, ends, hand, row)
-            push, push_speed = critical_spring(push, push_speed, wanted, PUSH_HALF_LIFE_S, dt_s)
-            push = _held_off(push, wanted)
-            hand[:, :, :3, 3] += push
-        self._place_limbs(rotation, joints, ends, hand)
-        head, chest = joints[:, _HEAD], joints[:, _CHEST]
+            wanted = contacts.clearance(matrices, goal[:, :2], row[:, ch.POINTS])
+            push = contacts.advance_push(push, wanted, dt_s)
+            goal[:, :2, :3, 3] += push[:, 0]
+        rotation = turns[:, : ch.JOINTS]
+        place_limbs(_LIMBS, rotation, matrices.take(_BONES, axis=1), goal)
+        head, chest = matrices[:, _HEAD], matrices[:, _CHEST]
         gaze = liveliness.look(self.life, life, state.gaze, signal.gaze_target, head, chest, _EYES, dt_s)
-        pose = Pose(rotation, root, gaze.eye, blink, lungs)
-        return PerformerState(play, blend, life, gaze, contact_frames, push, push_speed), pose
+        pose = Pose(rotation, row[:, ch.ROOT], gaze.eye, blink, lungs)
+        return PerformerState(play, blend, life, gaze, matrices, push), pose
 
     def _layers(
         self, state: PerformerState, decisions: Decisions, signal: PerformSignal, emotion: Floats, dt_s: float
@@ -167,25 +152,26 @@ class Performer:
             for layer in held:
                 unit[:, layer] = self.bank.rest[layer]
                 weights[:, layer] = self._neutral_weights(layer)
-        changed = unit != play.unit
-        fresh = decisions.started | changed
-        # A posture that is chosen again goes on; a layer held by the mode does not hear the planner's starts.
-        fresh[:, self._posture] = changed[:, self._posture]
-        for layer in held:
-            fresh[:, layer] = changed[:, layer]
-        if np.count_nonzero(fresh):
-            seconds, pick = decisions.duration_s, decisions.variant_pick
-            play = playback.begin(self.bank, play, fresh, unit, seconds, weights, pick, self._posture, dt_s)
+        changed, started = unit != play.unit, decisions.started
+        events: Any = None
+        if np.count_nonzero(changed) or np.count_nonzero(started):
+            # A posture that is chosen again goes on; a layer held by the mode does not hear the planner's starts.
+            events = started | changed
+            for layer in (self._posture, *held):
+                events[:, layer] = changed[:, layer]
+            if np.count_nonzero(events):
+                seconds, pick = decisions.duration_s, decisions.variant_pick
+                play = playback.begin(self.bank, play, events, unit, seconds, weights, pick, self._posture, dt_s)
         drift_to = _NEUTRAL[None] if held else signal.emotion
-        value, play, jumped = playback.advance_playback(self.bank, play, drift_to, self._posture, dt_s)
+        values, play, jumped = playback.advance_playback(self.bank, play, drift_to, self._posture, dt_s)
         blend = state.blend
-        events = fresh | jumped
-        if np.count_nonzero(events):
+        if jumped is not None:
+            events = jumped if events is None else events | jumped
+        if events is not None and np.count_nonzero(events):
+            frames = state.matrices.take(contacts.FRAMES, axis=1)
             base_s, arc = self.life.transition_s * (emotion @ self.life.tempo), emotion @ self.life.arc
-            blend = blending.switch(
-                self.bank, blend, play, events, value, base_s, arc, state.contact_frames, self._posture, dt_s
-            )
-        return play, blending.advance_blend(blend, value, dt_s)
+            blend = blending.switch(self.bank, blend, play, events, values, base_s, arc, frames, self._posture, dt_s)
+        return play, blending.advance_blend(blend, values, dt_s)
 
     def _neutral_weights(self, layer: int) -> Floats:
         unit = self.bank.rest[layer]
@@ -202,78 +188,11 @@ class Performer:
     ) -> tuple[liveliness.Life, Floats, Floats, Floats]:
         """Breath, sway and the head's share of the gaze added to the row."""
         mood = np.empty((len(blend.row), 2))
-        mood[:, 0] = ~(self.bank.looks[play.unit] & play.active).any(axis=1)
+        mood[:, 0] = blend.source.attention
         mood[:, 1] = signal.speaking
         life, added, lungs, blink = liveliness.advance_life(self.life, state.life, state.gaze, emotion, mood, dt_s)
-        row = blend.row.copy()
-        row[:, _ADDED] += added
-        return life, row, lungs, blink
-
-    @staticmethod
-    def _normal(row: Floats) -> tuple[Floats, Floats]:
-        rotation = bl.normalize(row[:, ch.ROTATION].reshape(len(row), ch.JOINTS, 4))
-        return rotation, row[:, ch.ROOT]
-
-    @staticmethod
-    def _hands(row: Floats, blend: blending.Blend, contact_frames: Floats) -> Floats:
-        """(n, 2, 4, 4) where the hands are wanted, in model space: kept in their contact frames."""
-        n = len(row)
-        local = bl.affine(bl.normalize(row[:, ch.PALM].reshape(n, 2, 4)))
-        local[..., :3, 3] = row[:, ch.WRIST].reshape(n, 2, 3)
-        frames = contact_frames[np.arange(n)[:, None], blend.frame]
-        return np.asarray(frames @ local)
-
-    @staticmethod
-    def _clearance(joints: Floats, ends: Floats, hand: Floats, row: Floats) -> Floats:
-        """(n, 2, 3) the push that keeps both hands and forearms out of body and table."""
-        n = len(row)
-        local = np.empty((n, 2, 1 + ch.POINTS_PER_HAND, 3), dtype=np.float32)
-        local[:, :, 0] = _PALM_POINT
-        local[:, :, 1:] = row[:, ch.POINTS].reshape(n, 2, ch.POINTS_PER_HAND, 3)
-        points = np.empty((n, 2, 7, 3), dtype=np.float32)
-        wrist = hand[:, :, :3, 3]
-        points[:, :, 0] = wrist
-        points[:, :, 1:6] = local @ hand[:, :, :3, :3].swapaxes(-1, -2) + wrist[:, :, None]
-        # The elbow follows the wrist about half way.
-        elbow = joints.take(figure.LOWER[:2], axis=1)[..., :3, 3] + 0.5 * (wrist - ends[:, :2])
-        points[:, :, 6] = 0.5 * (wrist + elbow)
-        maps = collision.body_frames(joints.take(_BODY, axis=1))
-        return collision.push_out(maps, points)
-
-    @staticmethod
-    def _place_limbs(
-        rotation: Floats,
-        joints: Floats,
-        ends: Floats,
-        hand: Floats,
-    ) -> None:
-        """Arms to their hands, legs to their feet: rewrites the twelve joints of the limbs in rotation."""
-        n = len(rotation)
-        bones = joints.take(figure.BONES, axis=1)
-        turned = bones[..., :3, :3]
-        points = np.empty((n, 4, 4, 3), dtype=np.float32)
-        points[:, :2] = bones[..., :3, 3].reshape(n, 2, 4, 3)
-        points[:, 2] = ends
-        points[:, 3, :2] = hand[:, :, :3, 3]
-        points[:, 3, 2:] = figure.FEET_WORLD
-        hinge = (turned[:, :4] @ _HINGE)[..., 0]
-        fix = limbs.solve_limbs(_LIMBS, points, hinge)
-        # Model-space rotations of upper bones, lower bones and ends, then back to local ones.
-        model = np.empty((n, 12, 3, 3), dtype=np.float32)
-        np.matmul(bl.rotation_matrix(fix).reshape(n, 8, 3, 3), turned, out=model[:, :8])
-        model[:, 8:10] = hand[:, :, :3, :3]
-        model[:, 10:] = _FLAT
-        above = np.empty_like(model)
-        above[:, :4] = joints.take(figure.SHOULDERS, axis=1)[..., :3, :3]
-        above[:, 4:] = model[:, :8]
-        rotation[:, _ENDS] = bl.from_matrix(above.swapaxes(-1, -2) @ model)
-
-
-def _held_off(push: Floats, wanted: Floats) -> Floats:
-    """The push, along its way at least what is wanted: a surface stops a hand at once, and lets go of it softly."""
-    square = (wanted * wanted).sum(axis=-1, keepdims=True)
-    lacking = 1.0 - (push * wanted).sum(axis=-1, keepdims=True) / np.maximum(square, 1e-12)
-    return np.asarray(push + wanted * np.maximum(lacking, 0.0))
+        added += blend.row
+        return life, added, lungs, blink
 
 
 def _shares(signal: PerformSignal) -> Floats:

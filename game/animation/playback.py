@@ -29,8 +29,12 @@ LEAST_WEIGHT = 0.02
 PRUNE_FROM = 8
 """From this many characters on it pays to gather only the variants in use."""
 
+Layered = list[tuple[int, Ints | None, Floats]]
+"""What layers say: layer, the characters in whom it runs (None: all), and for them values and their change per second
+(m, 2, CHANNELS). The posture's comes first."""
 
-# Columns of Playback.timing.
+
+# Rows of Playback.timing.
 (
     _BEFORE_S,
     _LEAD_RATE,
@@ -41,23 +45,26 @@ PRUNE_FROM = 8
     _LOOP_FIRST,
     _LOOP_FRAMES,
     _LOOP_TIMES,
-) = range(9)
+    _LAST,
+) = range(10)
 
 
 @dataclass(frozen=True, eq=False)
 class Playback:
     """n characters, L layers.
 
-    unit: (n, L). first, length: (n, L, 7) rows of the chosen variants and their frames. weight: (n, L, 7) of eq. 5.
-    timing: (n, L, 9) second of the stroke, frames per second before and after it, first frame, length
-    and added frames of a stretched middle, first frame, frames and times of a repeated one. elapsed_s: (n, L) since
-    the unit started (a posture: position in its loops). lap: (n, L) repeats already made. active: (n, L) False once
-    a unit has played to its end.
+    unit: (n, L). first: (n, L, 7) rows of the chosen variants. lap_frames: (n, L, 7) frames a posture's loops take, ∞
+    for what is played once; before_last: (n, L, 7) the last frame but one. weight: (n, L, 7) the posture's of eq. 5,
+    which drift; the others' as they are mixed. timing: (10, n, L) second of the stroke, frames per second before and
+    after it, first frame, length and added frames of a stretched middle, first frame, frames and times of a repeated
+    one, last frame. elapsed_s: (n, L) since the unit started (a posture: position in its loops). lap: (n, L) repeats
+    already made. active: (n, L) False once a unit has played to its end.
     """
 
     unit: Ints
     first: NDArray[np.int32]
-    length: Floats
+    lap_frames: Floats
+    before_last: Floats
     weight: Floats
     timing: Floats
     elapsed_s: Floats
@@ -67,7 +74,7 @@ class Playback:
     @property
     def to_stroke_s(self) -> Floats:
         """(n, L) seconds until the stroke, negative after it."""
-        return np.asarray(self.timing[..., _BEFORE_S] - self.elapsed_s)
+        return np.asarray(self.timing[_BEFORE_S] - self.elapsed_s)
 
 
 def start(n: int, layers: int) -> Playback:
@@ -76,9 +83,10 @@ def start(n: int, layers: int) -> Playback:
     return Playback(
         unit=np.full(shape, -1, dtype=np.intp),
         first=np.zeros((*shape, 7), dtype=np.int32),
-        length=np.ones((*shape, 7), dtype=np.float32),
+        lap_frames=np.ones((*shape, 7), dtype=np.float32),
+        before_last=np.zeros((*shape, 7), dtype=np.float32),
         weight=np.zeros((*shape, 7), dtype=np.float32),
-        timing=np.zeros((*shape, 9), dtype=np.float32),
+        timing=np.zeros((10, *shape), dtype=np.float32),
         elapsed_s=np.zeros(shape, dtype=np.float32),
         lap=np.zeros(shape, dtype=np.float32),
         active=np.zeros(shape, dtype=bool),
@@ -117,113 +125,150 @@ def begin(
     loop_frames = bank.loop_frames[u]
     room = (HOLD_END - HOLD_START) * (last - stroke)
     held = np.where(loop_frames > 0, 0.0, np.minimum(extra, HOLD_MOST * room))
-    timing = np.empty((len(u), 9), dtype=np.float32)
-    timing[:, _BEFORE_S] = before
-    timing[:, _LEAD_RATE], timing[:, _AFTER_RATE] = stroke / np.maximum(before, 1e-6), rate
-    timing[:, _HOLD_FIRST], timing[:, _HOLD_LENGTH] = stroke + HOLD_START * (last - stroke), room + held
-    timing[:, _HELD], timing[:, _LOOP_FIRST], timing[:, _LOOP_FRAMES] = held, bank.loop_first[u], loop_frames
-    timing[:, _LOOP_TIMES] = np.where(loop_frames > 0, np.round(extra / np.maximum(loop_frames, 1.0)), 0.0)
+    loops = who[1] == posture_layer
+    timing = np.empty((10, len(u)), dtype=np.float32)
+    # A posture never comes to its stroke or its end.
+    timing[_BEFORE_S], timing[_LAST] = np.where(loops, np.inf, before), np.where(loops, np.inf, last)
+    timing[_LEAD_RATE], timing[_AFTER_RATE] = np.where(loops, FPS, stroke / np.maximum(before, 1e-6)), rate
+    timing[_HOLD_FIRST], timing[_HOLD_LENGTH] = stroke + HOLD_START * (last - stroke), room + held
+    timing[_HELD], timing[_LOOP_FIRST], timing[_LOOP_FRAMES] = (
+        np.where(loops, 0.0, held),
+        bank.loop_first[u],
+        loop_frames,
+    )
+    timing[_LOOP_TIMES] = np.where(loop_frames > 0, np.round(extra / np.maximum(loop_frames, 1.0)), 0.0)
     # Postures come in anywhere in their loop, so that the same one does not look the same twice.
-    phase = np.where(who[1] == posture_layer, np.modf(pick[who] * 7.31)[0] * (w * length).sum(-1) / FPS, 0.0)
+    phase = np.where(loops, np.modf(pick[who] * 7.31)[0] * (w * length).sum(-1) / FPS, 0.0)
 
     def put(old: NDArray[Any], new: Any) -> NDArray[Any]:
         out = old.copy()
         out[who] = new
         return out
 
+    timings = state.timing.copy()
+    timings[:, who[0], who[1]] = timing
     return Playback(
         unit=put(state.unit, u),
         first=put(state.first, first),
-        length=put(state.length, length),
-        weight=put(state.weight, w),
-        timing=put(state.timing, timing),
+        lap_frames=put(state.lap_frames, np.where(loops[:, None], length, np.inf)),
+        before_last=put(state.before_last, length - 1.0),
+        weight=put(state.weight, np.where(loops[:, None], w, _shares(w))),
+        timing=timings,
         elapsed_s=put(state.elapsed_s, phase - dt_s),
         lap=put(state.lap, 0.0),
         active=put(state.active, bank.count[u].any(axis=-1)),
     )
 
 
-def _drifted(bank: MotionBank, state: Playback, emotion: Floats, posture_layer: int, dt_s: float) -> Floats:
-    """Weights with the held posture's drawn toward the present emotion's mix, slowly enough never to flicker.
+def _shares(weight: Floats) -> Floats:
+    """Weights (..., 7) as they are mixed: the least left out, the sum 1."""
+    shares = np.maximum(weight - LEAST_WEIGHT, 0.0)
+    shares /= np.maximum(np.add.reduce(shares, axis=-1, keepdims=True), 1e-9)
+    return np.asarray(shares)
+
+
+def _drifted(bank: MotionBank, weight: Floats, unit: Ints, emotion: Floats, dt_s: float) -> Floats:
+    """The held postures' weights (n, 7) drawn toward the present emotion's mix, slowly enough never to flicker.
 
     Eq. 5's exponent is −(|i'|² − 2·i'_k·i_k + i_k²)/r²; what is the same for all k cancels in the shares.
     """
-    unit = state.unit[:, posture_layer]
-    exponent = emotion * bank.mix_slope[unit] + bank.mix_level[unit]
-    goal = np.exp(exponent - exponent.max(axis=1, keepdims=True))
-    goal /= goal.sum(axis=1, keepdims=True)
-    weight = state.weight.copy()
-    held = weight[:, posture_layer]
-    held += (goal - held) * np.float32(1.0 - 2.0 ** (-dt_s / DRIFT_HALF_LIFE_S))
-    return weight
+    goal = emotion.astype(np.float32) * bank.mix_slope.take(unit, axis=0)
+    goal += bank.mix_level.take(unit, axis=0)
+    goal -= np.maximum.reduce(goal, axis=1, keepdims=True)
+    np.exp(goal, out=goal)
+    goal /= np.add.reduce(goal, axis=1, keepdims=True)
+    goal -= weight
+    goal *= 1.0 - 2.0 ** (-dt_s / DRIFT_HALF_LIFE_S)
+    goal += weight
+    return np.asarray(goal)
 
 
 def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats]:
-    """Frame (n, L) in a unit that plays once, frames per second there, and the repeats made so far."""
-    if np.count_nonzero(state.active) == len(elapsed_s):
-        # Only postures are running, and those loop.
-        nothing = np.zeros_like(elapsed_s)
-        return nothing, nothing.copy(), state.lap
-    before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times = state.timing.transpose(2, 0, 1)
+    """Frame (n, L) a unit has come to, frames per second there, and the repeats made so far."""
+    before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times, _ = state.timing
     past = elapsed_s - before
-    at = np.minimum(elapsed_s, before) * lead + np.maximum(past, np.float32(0.0)) * after
+    at = np.minimum(elapsed_s, before) * lead
+    at += np.maximum(past, 0.0) * after
     rate = np.where(past < 0.0, lead, after)
     lap = state.lap
     if np.count_nonzero(times):
         lap = np.clip(np.floor((at - loop_first) / np.maximum(loop_frames, 1.0)), 0.0, times)
-        at = at - lap * loop_frames
+        at -= lap * loop_frames
     if np.count_nonzero(held):
         length = np.maximum(hold_length, 1e-6)
-        u = np.float32(2.0 * np.pi) * np.clip((at - hold_first) / length, 0.0, 1.0)
-        at = at - held * (u - np.sin(u)) * np.float32(0.5 / np.pi)
+        u = (2.0 * np.pi) * np.minimum(np.maximum((at - hold_first) / length, 0.0), 1.0)
+        at -= held * (u - np.sin(u)) * (0.5 / np.pi)
         rate = rate * (1.0 - held / length * (1.0 - np.cos(u)))
     return at, rate, lap
 
 
 def advance_playback(
     bank: MotionBank, state: Playback, emotion: Floats, posture_layer: int, dt_s: float
-) -> tuple[Floats, Playback, Bools]:
+) -> tuple[Layered, Playback, Bools | None]:
     """Time passes for everything that runs.
 
-    -> values and their change per second of every layer (n, L, 2, CHANNELS); the state; jumped (n, L): True where a
-    unit went back to repeat its middle, or came to its end.
+    -> what the running layers say; the state; jumped (n, L): True where a unit went back to repeat its middle, or came
+    to its end, None where none did.
     """
-    n, layers = state.unit.shape
-    elapsed = state.elapsed_s + np.float32(dt_s)
+    elapsed = state.elapsed_s + dt_s
     at, rate, lap = _played(state, elapsed)
-    last = state.length[:, :, 0]
-    ended = state.active & (at >= last)
-    ended[:, posture_layer] = False
-    jumped = ended | (lap != state.lap)
-    weight = _drifted(bank, state, emotion, posture_layer, dt_s)
-    state = Playback(state.unit, state.first, state.length, weight, state.timing, elapsed, lap, state.active & ~ended)
-    frame = np.empty((n, layers, 7), dtype=np.float32)
-    frame[:] = np.minimum(at, last)[:, :, None]
-    frame[:, posture_layer] = np.fmod(elapsed[:, posture_layer, None] * np.float32(FPS), state.length[:, posture_layer])
-    rate[:, posture_layer] = FPS
-    low = np.minimum(frame, state.length - 1).astype(np.int32)
+    last, active, jumped = state.timing[_LAST], state.active, None
+    ended = active & (at >= last)
+    if np.count_nonzero(ended):
+        active, jumped = active & ~ended, ended
+    if lap is not state.lap:
+        jumped = ended | (lap != state.lap)
+    mixed = state.weight.copy()
+    drifted = _drifted(bank, mixed[:, posture_layer], state.unit[:, posture_layer], emotion, dt_s)
+    weight = mixed.copy()
+    weight[:, posture_layer] = drifted
+    mixed[:, posture_layer] = _shares(drifted)
+    # Where every variant is in its clip: the frame before and the share of the way to the next.
+    frame = np.fmod(np.minimum(at, last)[:, :, None], state.lap_frames)
+    low = np.minimum(frame, state.before_last).astype(np.int32)
     part = frame - low
-    index = state.first + low
-    weight = np.maximum(weight - np.float32(LEAST_WEIGHT), np.float32(0.0))
-    weight /= np.maximum(weight.sum(axis=-1, keepdims=True), np.float32(1e-9))
+    low += state.first
+    layers = [posture_layer, *(k for k in range(at.shape[1]) if k != posture_layer)]
+    values = _mixed(bank, low, mixed, part, rate, active, layers)
+    state = Playback(
+        state.unit, state.first, state.lap_frames, state.before_last, weight, state.timing, elapsed, lap, active
+    )
+    return values, state, jumped
+
+
+def _mixed(
+    bank: MotionBank,
+    index: NDArray[np.int32],
+    weight: Floats,
+    part: Floats,
+    rate: Floats,
+    active: Bools,
+    layers: list[int],
+) -> Layered:
+    """Rows at index and the next one, mixed by weight (n, L, 7) and by part of the way."""
+    n = len(index)
+    keep = [weight.shape[-1]] * len(layers)
     if n >= PRUNE_FROM:
-        keep = max(int((weight > 0.0).sum(axis=-1).max()), 1)
-        if keep < 7:
-            best = np.argpartition(-weight, keep - 1, axis=-1)[..., :keep]
-            index, weight, part = (np.take_along_axis(a, best, axis=-1) for a in (index, weight, part))
-    return _mixed(bank, index, weight, part, rate), state, jumped
-
-
-def _mixed(bank: MotionBank, index: NDArray[np.int32], weight: Floats, part: Floats, rate: Floats) -> Floats:
-    """Rows at index and the next one, mixed by weight (n, L, k) and by part of the way -> (n, L, 2, CHANNELS)."""
-    n, layers, kinds = weight.shape
-    mix = np.empty((n, layers, 2, 2, kinds), dtype=np.float32)
-    upper = np.multiply(weight, part, out=mix[:, :, 0, 1])
-    np.subtract(weight, upper, out=mix[:, :, 0, 0])
-    change = np.multiply(weight, rate[:, :, None], out=mix[:, :, 1, 1])
-    np.negative(change, out=mix[:, :, 1, 0])
-    both = np.empty((n, layers, 2, kinds), dtype=np.int32)
-    both[:, :, 0] = index
-    np.add(index, 1, out=both[:, :, 1])
-    rows = bank.rows.take(both.reshape(n, layers, 2 * kinds), axis=0)
-    return np.asarray(mix.reshape(n, layers, 2, 2 * kinds) @ rows)
+        best = np.argsort(-weight, axis=-1)
+        index = np.take_along_axis(index, best, axis=-1)
+        weight, part = (np.take_along_axis(a, best, axis=-1) for a in (weight, part))
+        keep = np.maximum(np.count_nonzero(weight, axis=-1).max(axis=0), 1).tolist()
+    mix = np.empty((*weight.shape[:2], 2, 2, weight.shape[-1]), dtype=np.float32)
+    np.multiply(weight, part, out=mix[:, :, 0, 1])
+    np.subtract(weight, mix[:, :, 0, 1], out=mix[:, :, 0, 0])
+    np.multiply(weight, rate[:, :, None], out=mix[:, :, 1, 1])
+    np.negative(mix[:, :, 1, 1], out=mix[:, :, 1, 0])
+    both = np.stack([index, index + 1], axis=2)
+    values: Layered = []
+    for layer in layers:
+        who = None
+        running = np.count_nonzero(active[:, layer])
+        if running == 0:
+            continue
+        frames, shares = both[:, layer, :, : keep[layer]], mix[:, layer, :, :, : keep[layer]]
+        if running < n:
+            who = np.flatnonzero(active[:, layer])
+            frames, shares = frames.take(who, axis=0), shares.take(who, axis=0)
+        rows = bank.rows.take(frames.reshape(running, -1), axis=0)
+        values.append((layer, who, shares.reshape(running, 2, -1) @ rows))
+    return values

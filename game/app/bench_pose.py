@@ -38,6 +38,8 @@ _COUNTS = (1, 100, 1000)
 _WANTED_SAME = {1: "≤ 1.3× floor", 100: "≤ 8.4 µs", 1000: "≤ 5.2 µs"}
 _WANTED_ALL = {1: "≤ 150 µs", 100: "", 1000: ""}
 _CROWD_FROM = 16
+_SEED = 2
+_LONGEST_TICKS = 400
 
 
 def rows() -> list[Row]:
@@ -93,24 +95,28 @@ def _alternate(works: Sequence[Callable[[], object]], n: int) -> list[list[float
 
 
 def _stand(performer: Performer, planner: Planner, n: int) -> tuple[PerformerState, Any, PerformSignal, Pose]:
-    """Two seconds into a talk, a gesture and a transition on the way."""
+    """In the middle of a talk: the first has a gesture and a transition on the way, a crowd whatever each has."""
     felt = np.tile(emotion_vector({"joy": 0.5, "surprise": 0.2}), (n, 1))
     words = np.zeros((n, len(performer.library.gestures)))
     signal = PerformSignal(felt, np.tile(GAZE_CUSTOMER, (n, 1)), np.ones(n))
-    plan, state = planner.start(n, 1), performer.start(n, 1)
-    for tick in range(60):
+    plan, state = planner.start(n, _SEED), performer.start(n, _SEED)
+    for tick in range(_LONGEST_TICKS):
         said = words.copy()
-        said[:, 0] = float(50 <= tick < 55)
+        said[:, 2] = float(tick % 80 in range(40, 60))
         plan, decisions = planner.advance(plan, PlannerSignal(felt, said, tick * _TICK_S), _TICK_S)
         state, pose = performer.advance(state, decisions, signal, _TICK_S)
+        age = state.blend.age_s[0]
+        changing = (age > 0.1) & (age < state.blend.source.ends_s[0, 0])
+        if state.playback.active[0, performer.layers.index("gesture")] and changing.any():
+            break
     # Most ticks start nothing: the decision stands.
     decisions = replace(decisions, started=np.zeros_like(decisions.started))
     return state, decisions, signal, pose
 
 
 def _same_work(performer: Performer, rig: Rig, state: PerformerState, signal: PerformSignal) -> object:
-    value, _, _ = advance_playback(performer.bank, state.playback, signal.emotion, 0, _TICK_S)
-    mixed, _ = compose(value, state.blend.gate)
+    values, _, _ = advance_playback(performer.bank, state.playback, signal.emotion, 0, _TICK_S)
+    mixed, _ = compose(values, state.blend.source.gate)
     rotation = bl.normalize(mixed[:, ch.ROTATION].reshape(len(mixed), ch.JOINTS, 4))
     pose = Pose(rotation, mixed[:, ch.ROOT], state.gaze.eye, state.gaze.eye, state.gaze.eye)
     return rig.advance(rig.start(len(mixed)), pose, _TICK_S)

@@ -42,7 +42,7 @@ def solved(elbow_deg: float, target: object, kind: limbs.Limbs = LEG) -> tuple[n
     end = joint + 0.206 * np.array([np.cos(angle), 0, np.sin(angle)])
     goal = end if target is None else np.asarray(target)
     points = np.array([np.zeros(3), joint, end, goal], dtype=np.float32)[None, :, None]
-    fix = limbs.solve_limbs(kind, points, np.array([[[0, 1, 0]]], dtype=np.float32))[0, :, 0]
+    fix = limbs.solve_limbs(kind, points, limbs.HINGE_WEIGHT_M * np.array([[[0, 1, 0]]], dtype=np.float32))[0][0, :, 0]
     upper, lower = (Rotation.from_quat(q) for q in fix)
     return upper.apply(joint) + lower.apply(end - joint), fix
 
@@ -71,37 +71,48 @@ def body_maps() -> np.ndarray:
     return collision.body_frames(rest[None, [REFERENCE.index[name] for name in collision.BODY_JOINTS]])
 
 
+def at_points(**where: tuple[float, float, float]) -> np.ndarray:
+    """(1, 14, 4) both hands' points far away but for some: left_1 is the left palm."""
+    points = np.full((1, 2, 7, 4), 5.0, dtype=np.float32)
+    points[..., 3] = 1.0
+    for name, place in where.items():
+        hand, _, point = name.partition("_")
+        points[0, ("left", "right").index(hand), int(point), :3] = place
+    return points.reshape(1, 14, 4)
+
+
 def test_points_inside_the_body_are_pushed_to_its_surface_and_others_left_alone() -> None:
     maps = body_maps()
-    points = np.full((1, 2, 7, 3), 5.0, dtype=np.float32)
-    assert not collision.push_out(maps, points).any()
-    points[0, 0, 1] = (0.0, 0.82, 0.10)  # the left palm 1 cm inside the breast
-    push = collision.push_out(maps, points)
+    assert collision.push_out(maps, at_points()) is None
+    palm = np.array([0.0, 0.82, 0.10])  # the left palm 1 cm inside the breast
+    push = collision.push_out(maps, at_points(left_1=tuple(palm)))
+    assert push is not None
     assert push[0, 0, 2] > 0.02
     assert abs(push[0, 0, 0]) < 1e-3
     assert not push[0, 1].any()
-    points[0, 0, 1] += push[0, 0]
-    assert np.linalg.norm(collision.push_out(maps, points)[0, 0]) < 0.25 * np.linalg.norm(push[0, 0])
+    again = collision.push_out(maps, at_points(left_1=tuple(palm + push[0, 0])))
+    assert again is not None
+    assert np.linalg.norm(again[0, 0]) < 0.25 * np.linalg.norm(push[0, 0])
 
 
 def test_the_gradient_is_that_of_the_distance() -> None:
     maps = body_maps()
     rng = np.random.default_rng(3)
-    points = (np.array([0, 0.9, 0]) + rng.normal(size=(1, 40, 3)) * 0.2).astype(np.float32)
+    points = np.ones((1, 40, 4), dtype=np.float32)
+    points[..., :3] = np.array([0, 0.9, 0]) + rng.normal(size=(1, 40, 3)) * 0.2
     distance, away = collision.body_distance(maps, points)
     assert distance.shape == (1, 6, 40)
     np.testing.assert_allclose(np.linalg.norm(away, axis=2), 1.0, atol=1e-4)
-    moved, _ = collision.body_distance(maps, points + 1e-3 * away[:, 0].swapaxes(-1, -2))
+    points[..., :3] += 1e-3 * away[:, 0].swapaxes(-1, -2)
+    moved, _ = collision.body_distance(maps, points)
     assert (moved[:, 0] > distance[:, 0]).all()
 
 
 def test_hands_on_the_table_are_lifted_and_below_its_edge_drawn_back() -> None:
     maps = body_maps()
-    points = np.full((1, 2, 7, 3), 5.0, dtype=np.float32)
-    points[0, 0, 0] = (0.2, 0.58, 0.4)
-    points[0, 1, 0] = (-0.3, 0.50, 0.14)
-    push = collision.push_out(maps, points)
-    np.testing.assert_allclose(points[0, 0, 0, 1] + push[0, 0, 1], 0.585 + 0.027 + 0.004, atol=1e-3)
+    push = collision.push_out(maps, at_points(left_0=(0.2, 0.58, 0.4), right_0=(-0.3, 0.50, 0.14)))
+    assert push is not None
+    np.testing.assert_allclose(0.58 + push[0, 0, 1], 0.585 + 0.027 + 0.004, atol=1e-3)
     assert push[0, 1, 2] < -0.005
     assert abs(push[0, 1, 1]) < 0.01
 

@@ -20,7 +20,7 @@ from game.animation import (
     interpolate_pose,
     largest_joint_acceleration,
 )
-from game.animation.channels import PART_OF_JOINT, PARTS
+from game.animation.channels import PART_OF_JOINT, PARTS, WRIST
 from game.core import quaternion as quat
 from game.core.emotion_space import EMOTIONS, emotion_vector
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
@@ -120,7 +120,7 @@ def test_a_hand_on_the_table_stays_there_while_the_torso_moves(library: UnitLibr
     heights = at[10:, J["leftHand"], 1]
     chest = at[10:, J["chest"]]
     assert np.ptp(chest, axis=0).max() > 0.004, "the torso moves"
-    clip = performer.bank.rows[:, 168]  # the left wrist's height in table space, as recorded
+    clip = performer.bank.rows[:, WRIST.start + 1]  # the left wrist's height in table space, as recorded
     first = performer.bank.first[library.index["hand_on_table"], 2, 0]
     recorded = clip[first : first + int(performer.bank.frames[library.index["hand_on_table"], 2, 0])]
     assert recorded.min() - 0.005 < heights.min()
