@@ -17,7 +17,7 @@ from game.animation import NEEDED, Rig
 from game.app.avatar_look import AvatarLooks
 from game.app.avatar_rig import EYE_HEIGHT_M, avatar_rig, place_avatar
 from game.core.errors import BadInput, Where
-from game.face import AvatarFace, FaceParams, FaceSignal, load_rated
+from game.face import AvatarFace, FaceLeak, FaceParams, FaceSignal, load_rated
 from game.formats import (
     GltfFile,
     JointMap,
@@ -61,9 +61,11 @@ class Avatar:
     licence: str
     notes: tuple[str, ...]
 
-    def look(self, signal: FaceSignal, params: FaceParams, visemes: NDArray[np.float64]) -> tuple[AvatarLook, float]:
+    def look(
+        self, signal: FaceSignal, params: FaceParams, visemes: NDArray[np.float64], leak: FaceLeak | None = None
+    ) -> tuple[AvatarLook, float]:
         """What the face shows in a moment, and how much of the gaze the eyes follow."""
-        found = self.face.weights(signal, params, visemes)
+        found = self.face.weights(signal, params, visemes, leak)
         return self.looks.at(found.weight), found.look
 
 

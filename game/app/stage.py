@@ -15,7 +15,16 @@ from game.animation import Pose, Rig, SpringState
 from game.app.rig import load_rig
 from game.core.humanoid import REFERENCE
 from game.core.paths import ASSETS
-from game.face import DEFAULT_STYLE, DrawList, FaceParams, FaceSignal, FaceStyle, read_style, tessellate
+from game.face import (
+    DEFAULT_STYLE,
+    DrawList,
+    FaceLeak,
+    FaceParams,
+    FaceSignal,
+    FaceStyle,
+    read_style,
+    tessellate,
+)
 from game.formats import Node, load_yaml
 from game.render import (
     DESIGN_SHARE,
@@ -177,7 +186,7 @@ class StageShow:
         avatar = self.assets.avatar
         moment = None if avatar is None or body is None else _Moment.of(body)
         if avatar is not None and moment is not None:
-            look, gaze = avatar.look(moment.signal, moment.params, moment.visemes)
+            look, gaze = avatar.look(moment.signal, moment.params, moment.visemes, moment.leak)
             self._looks = (look if self._looks is None else self._looks[1], look)
             pose = replace(pose, gaze=pose.gaze * np.float32(gaze))
         if self.puppet is None:
@@ -231,15 +240,17 @@ class StageShow:
 
 @dataclass(frozen=True)
 class _Moment:
-    """What drives an avatar's face in one tick: what reached the painted face, its numbers (K,), visemes (6,)."""
+    """What drives an avatar's face in one tick: what reached the painted face, its numbers (K,), visemes (6,), and
+    what breaks through the mask."""
 
     signal: FaceSignal
     params: FaceParams
     visemes: NDArray[np.float64]
+    leak: FaceLeak | None
 
     @staticmethod
     def of(body: Body) -> _Moment | None:
         """Of a world's body; None before its first tick."""
         if body.face_signal is None or body.face_params is None or body.face is None:
             return None
-        return _Moment(body.face_signal, body.face_params, body.face.visemes)
+        return _Moment(body.face_signal, body.face_params, body.face.visemes, body.face.leak)

@@ -12,7 +12,7 @@ from game.face.parts import Face, NamedExpression, Parts, load_expressions, load
 from game.face.rated import RatedExpression, load_rated, rated_scores, rated_text
 from game.face.ratings import AxisFit, fit_gaussian, fit_weights
 from game.face.speech import VISEMES, VisemeTrack, viseme_track
-from game.face.state import FaceDecision, FaceSignal, FaceState, advance_face, explain_face, start_face
+from game.face.state import FaceDecision, FaceLeak, FaceSignal, FaceState, advance_face, explain_face, start_face
 from game.face.style import DEFAULT_STYLE, FaceStyle, read_style
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "Face",
     "FaceAsset",
     "FaceDecision",
+    "FaceLeak",
     "FaceModel",
     "FaceParams",
     "FaceSearch",

@@ -14,7 +14,7 @@ from game.face.params import FIELDS, INDEX, REGIONS, FaceParams, clamp
 from game.face.parts import Face
 from game.face.speech import VISEMES
 
-__all__ = ["FaceDecision", "FaceSignal", "FaceState", "advance_face", "explain_face", "start_face"]
+__all__ = ["FaceDecision", "FaceLeak", "FaceSignal", "FaceState", "advance_face", "explain_face", "start_face"]
 
 Floats = NDArray[np.float64]
 _REGION_OF = np.array([REGIONS.index(field.region) for field in FIELDS])
@@ -40,6 +40,14 @@ class FaceSignal:
 
 
 @dataclass(frozen=True)
+class FaceLeak:
+    """A micro-expression at this moment: felt (7,) as it was when it broke through, and its share 0..1 of the face."""
+
+    felt: Floats
+    share: float
+
+
+@dataclass(frozen=True)
 class FaceState:
     """One character's face. Plain numbers only, so that it can be saved and compared."""
 
@@ -56,9 +64,15 @@ class FaceState:
     velocity: FaceParams  # (K,) per second
     visemes: Floats  # (6,) smoothed
     micro_numbers: tuple[int, ...]
-    micro_strength: float
+    micro_felt: Floats  # (7,)
     micro_time_s: float
     micro_length_s: float  # 0 = no micro-expression now
+    micro_share: float  # of the face in this step
+
+    @property
+    def leak(self) -> FaceLeak | None:
+        """What breaks through the mask in this step."""
+        return FaceLeak(self.micro_felt, self.micro_share) if self.micro_share > 0.0 else None
 
 
 @dataclass(frozen=True)
@@ -92,9 +106,10 @@ def start_face(asset: FaceAsset, seed: int, shown: Floats | None = None) -> Face
         velocity=np.zeros_like(params),
         visemes=np.zeros(len(VISEMES)),
         micro_numbers=numbers,
-        micro_strength=0.0,
+        micro_felt=_NEUTRAL.copy(),
         micro_time_s=0.0,
         micro_length_s=0.0,
+        micro_share=0.0,
     )
 
 
@@ -108,8 +123,9 @@ def advance_face(asset: FaceAsset, state: FaceState, signal: FaceSignal, dt_s: f
         state,
         tick=state.tick + 1,
         visemes=np.asarray(damp(state.visemes, spoken, asset.timing.speech_half_life_s, dt_s)),
+        micro_share=_micro_share(asset, state, dt_s),
     )
-    shown = _with_micro(asset, state, state.params.copy(), dt_s)
+    shown = _with_micro(asset, state, state.params.copy())
     _speak(asset, state.visemes, shown)
     _tremble(asset, state.tick * dt_s, shown)
     _look_and_blink(signal, shown)
@@ -203,19 +219,26 @@ def _leak(asset: FaceAsset, state: FaceState, signal: FaceSignal, dt_s: float) -
     return replace(
         state,
         micro_numbers=search.numbers(search.best(search.score_emotion(felt))),
-        micro_strength=_strength(felt),
+        micro_felt=felt.copy(),
         micro_time_s=0.5 * dt_s,
         micro_length_s=timing.micro_shortest_s + float(length) * (timing.micro_longest_s - timing.micro_shortest_s),
     )
 
 
-def _with_micro(asset: FaceAsset, state: FaceState, params: FaceParams, dt_s: float) -> FaceParams:
+def _micro_share(asset: FaceAsset, state: FaceState, dt_s: float) -> float:
+    """How much of the face the leak takes now: it swells and fades; the shortest are one flash."""
     if state.micro_length_s <= 0.0:
-        return params
+        return 0.0
     phase = min(max(state.micro_time_s / max(state.micro_length_s, dt_s), 0.0), 1.0)
     swell = min(1.0, 3.0 * min(phase, 1.0 - phase) + 0.25) if state.micro_length_s > 2.0 * dt_s else 1.0
-    felt = asset.model.parts.params(state.micro_numbers, state.micro_strength)
-    share = np.where(_REGION_OF == _SKIN, 0.0, asset.timing.micro_depth * swell)  # colour cannot change so fast
+    return asset.timing.micro_depth * swell
+
+
+def _with_micro(asset: FaceAsset, state: FaceState, params: FaceParams) -> FaceParams:
+    if state.micro_share <= 0.0:
+        return params
+    felt = asset.model.parts.params(state.micro_numbers, _strength(state.micro_felt))
+    share = np.where(_REGION_OF == _SKIN, 0.0, state.micro_share)  # colour cannot change so fast
     return np.asarray(params + share * (felt - params))
 
 

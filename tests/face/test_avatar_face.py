@@ -14,6 +14,7 @@ from game.face import (
     FIELDS,
     INDEX,
     AvatarFace,
+    FaceLeak,
     FaceSignal,
     RatedExpression,
     advance_face,
@@ -24,7 +25,7 @@ from game.face import (
     rated_text,
     start_face,
 )
-from game.formats import VrmExpression, VrmLookAt
+from game.formats import VrmExpression, VrmLookAt, build_vrm, read_gltf
 
 PRESETS = (
     *("happy", "angry", "sad", "relaxed", "surprised", "neutral", "blink", "aa", "ih", "ou", "ee", "oh"),
@@ -103,6 +104,50 @@ def test_overrides_block_and_blend():
     assert found["blink"] == 0.0
     assert found["aa"] == pytest.approx(0.2)
     assert face.weights(strong, STANDARD, visemes).look == pytest.approx(0.2)
+
+
+def test_what_is_felt_breaks_through_the_presets_and_their_overrides_hold_for_that_moment():
+    angry = VrmExpression("angry", True, (), override_blink="block", override_mouth="blend")
+    face = AvatarFace(plain(PRESETS, angry=angry))
+    mask = FaceSignal(shown(joy=0.9), felt=shown(anger=0.8), blink=1.0)
+    speaking = np.array([1.0, 0, 0, 0, 0, 0])
+    calm = dict(zip(face.names, face.weights(mask, STANDARD, speaking).weight, strict=True))
+    leak = FaceLeak(shown(anger=0.8), 0.85)
+    found = dict(zip(face.names, face.weights(mask, STANDARD, speaking, leak).weight, strict=True))
+    assert calm["happy"] == pytest.approx(0.9)
+    assert calm["angry"] == 0.0
+    assert (calm["blink"], calm["aa"]) == (1.0, 1.0)
+    assert found["angry"] == pytest.approx(0.85 * 0.8)
+    assert found["happy"] == pytest.approx(0.15 * 0.9)
+    assert found["blink"] == 0.0
+    assert found["aa"] == pytest.approx(1.0 - 0.85 * 0.8)
+    named = FaceSignal(shown(joy=0.9), expression="relaxed")
+    assert dict(zip(face.names, face.weights(named, STANDARD, SILENT, leak).weight, strict=True))["angry"] > 0.5
+
+
+@pytest.mark.parametrize(("name", "felt"), [("Godette_vrm_v4.vrm", "angry"), ("Example.vrm", "angry")])
+def test_leaks_of_real_presets_are_short_and_only_behind_a_mask(shared_data: Path, name: str, felt: str):
+    """A file of VRM 0.x and one of 1.0, neither with ARKit's names: half a minute of a smile over rage."""
+    expressions = build_vrm(read_gltf(shared_data / "vrm" / name)).expressions
+    asset, face = load_face(), AvatarFace(expressions)
+    assert not face.has_arkit
+    smile, rage = shown(joy=0.7), shown(anger=0.9)
+    found = {}
+    for honest in (True, False):
+        signal = FaceSignal(smile, felt=smile if honest else rage)
+        state = start_face(asset, 4, smile)
+        found[honest] = []
+        for _ in range(900):
+            state, params = advance_face(asset, state, signal, 1 / 30)
+            found[honest].append(face.weights(signal, params, SILENT, state.leak).weight[face.names.index(felt)])
+    assert max(found[True]) == 0.0
+    seen = np.array(found[False]) > 0.0
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], seen.astype(int), [0]])))
+    lengths_s = (edges[1::2] - edges[::2]) / 30.0
+    assert 3 <= len(lengths_s) <= 30
+    assert lengths_s.min() >= 1 / 25
+    assert lengths_s.max() <= 1 / 5 + 1e-9
+    assert max(found[False]) > 0.6
 
 
 def test_binary_expressions_are_all_or_nothing():
