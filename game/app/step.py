@@ -43,6 +43,8 @@ BURST_GAIN = 0.45
 """… by this share of the felt emotion on top, and leaves a residue in the posture."""
 AFTER_LINE_S = 0.35
 """A breath after each line before the next may begin by itself."""
+LIPS_LEAD_S = 0.04
+"""Lips set off before the sound is heard, and their spring takes as long."""
 NAMED_GESTURE_S = 0.4
 """When the stroke of a gesture that the script names falls, seconds into its line: on the first words."""
 PRESENT = 0.15
@@ -238,7 +240,7 @@ def face_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         # Gestures are judged alone: a face that tells the feeling would tell it for them.
         shown = with_neutral(np.zeros(6))
     if speech is not None and speech.line.speaker == "shopkeeper":
-        visemes = None if speech.visemes is None else speech.visemes.at(world.time_s - speech.started_s)
+        visemes = None if speech.visemes is None else speech.visemes.at(world.time_s - speech.started_s + LIPS_LEAD_S)
         if speech.line.face is not None and world.mode != "gestures":
             # What the script asks for belongs to the words: a drawn expression, or a nudge on what is shown.
             named = speech.line.face if speech.line.face in assets.face.expressions else None

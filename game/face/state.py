@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from game.core.springs import critical_spring, damp
+from game.core.springs import critical_spring
 from game.face.asset import FaceAsset
 from game.face.params import FIELDS, INDEX, REGIONS, FaceParams, clamp
 from game.face.parts import Face
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 _REGION_OF = np.array([REGIONS.index(field.region) for field in FIELDS])
 _NEUTRAL = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 _STILL = 0.02  # an emotion that moved less than this (sum over the seven) is not looked up again
-_SKIN = REGIONS.index("skin")
+_MOUTH, _SKIN = REGIONS.index("mouth"), REGIONS.index("skin")
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ class FaceState:
     params: FaceParams  # (K,)
     velocity: FaceParams  # (K,) per second
     visemes: Floats  # (6,) smoothed
+    viseme_velocity: Floats  # (6,) per second
     micro_numbers: tuple[int, ...]
     micro_felt: Floats  # (7,)
     micro_time_s: float
@@ -105,6 +106,7 @@ def start_face(asset: FaceAsset, seed: int, shown: Floats | None = None) -> Face
         params=params,
         velocity=np.zeros_like(params),
         visemes=np.zeros(len(VISEMES)),
+        viseme_velocity=np.zeros(len(VISEMES)),
         micro_numbers=numbers,
         micro_felt=_NEUTRAL.copy(),
         micro_time_s=0.0,
@@ -119,10 +121,15 @@ def advance_face(asset: FaceAsset, state: FaceState, signal: FaceSignal, dt_s: f
     state = _pursue(asset, state, signal, dt_s)
     state = _leak(asset, state, signal, dt_s)
     spoken = np.zeros(len(VISEMES)) if signal.visemes is None else np.asarray(signal.visemes, dtype=np.float64)
+    # A spring, not a plain damping: lips and jaw set off softly instead of leaving with a jerk.
+    visemes, velocity = critical_spring(
+        state.visemes, state.viseme_velocity, spoken, asset.timing.speech_half_life_s, dt_s
+    )
     state = replace(
         state,
         tick=state.tick + 1,
-        visemes=np.asarray(damp(state.visemes, spoken, asset.timing.speech_half_life_s, dt_s)),
+        visemes=np.maximum(np.asarray(visemes, dtype=np.float64), 0.0),
+        viseme_velocity=np.asarray(velocity, dtype=np.float64),
         micro_share=_micro_share(asset, state, dt_s),
     )
     shown = _with_micro(asset, state, state.params.copy())
@@ -226,20 +233,21 @@ def _leak(asset: FaceAsset, state: FaceState, signal: FaceSignal, dt_s: float) -
 
 
 def _micro_share(asset: FaceAsset, state: FaceState, dt_s: float) -> float:
-    """How much of the face the leak takes now: it swells and fades; the shortest are one flash."""
+    """How much of the face the leak takes now: it swells and fades."""
     if state.micro_length_s <= 0.0:
         return 0.0
     phase = min(max(state.micro_time_s / max(state.micro_length_s, dt_s), 0.0), 1.0)
-    swell = min(1.0, 3.0 * min(phase, 1.0 - phase) + 0.25) if state.micro_length_s > 2.0 * dt_s else 1.0
-    return asset.timing.micro_depth * swell
+    return asset.timing.micro_depth * math.sin(math.pi * phase)
 
 
 def _with_micro(asset: FaceAsset, state: FaceState, params: FaceParams) -> FaceParams:
     if state.micro_share <= 0.0:
         return params
     felt = asset.model.parts.params(state.micro_numbers, _strength(state.micro_felt))
-    share = np.where(_REGION_OF == _SKIN, 0.0, state.micro_share)  # colour cannot change so fast
-    return np.asarray(params + share * (felt - params))
+    # Colour cannot change so fast, and lips that speak are not free: what leaks then are brows and eyes.
+    free = np.ones(len(REGIONS))
+    free[_SKIN], free[_MOUTH] = 0.0, 1.0 - min(float(state.visemes.sum()), 1.0)
+    return np.asarray(params + state.micro_share * free[_REGION_OF] * (felt - params))
 
 
 def _speak(asset: FaceAsset, visemes: Floats, params: FaceParams) -> None:

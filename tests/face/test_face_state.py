@@ -141,6 +141,28 @@ def test_micro_expressions_leak_only_behind_a_mask(asset):
     assert (other != shown).any()
 
 
+def test_lips_that_speak_do_not_leak_and_set_off_softly(asset):
+    """Brows and eyes flash behind a talking mask; the mouth goes on talking. No opening is half there in one frame."""
+    smile, rage = emotion_vector({"joy": 0.7}), emotion_vector({"anger": 0.9})
+    sounds = [np.eye(len(VISEMES))[k] for k in (0, 4, 3, 5, 1)]  # 0.2 s each
+    mouths, leaks = {}, 0
+    for felt in (smile, rage):
+        signals = [FaceSignal(smile, felt=felt, visemes=sounds[i // 6 % 5]) for i in range(900)]
+        state, shown = start_face(asset, 4, smile), []
+        for signal in signals:
+            state, params = advance_face(asset, state, signal, DT)
+            shown.append(params)
+            leaks += state.leak is not None
+        mouths[felt is smile] = np.array(shown)
+    assert leaks > 10
+    still = np.abs(mouths[True] - mouths[False])[30:]  # after the first word
+    assert still[:, region_mask("eyebrows")].max() > 5.0
+    assert still[:, region_mask("mouth")].max() < 0.1
+    opening = mouths[True][:, INDEX["mouth_open"]]
+    assert np.ptp(opening) > 12.0
+    assert np.abs(np.diff(opening)).max() < 0.4 * np.ptp(opening)
+
+
 def test_a_saved_face_goes_on_as_if_nothing_had_happened(asset):
     signals = [FaceSignal(emotion_vector({"fear": 0.6}), felt=emotion_vector({"anger": 0.8}))] * 60
     middle, _, _ = _run(asset, start_face(asset, 2), signals)

@@ -60,6 +60,11 @@ def test_proposals_around_the_circle_lie_there_and_do_not_contradict_themselves(
         assert not worn or np.stack(worn)[:, :6].min(axis=0).max() > 0.02, f.face
 
 
+def test_nothing_wanted_is_the_standard_face(proposer):
+    for diverse in (False, True):
+        assert proposer.find(Wanted((0.0, 0.0)), 12, diverse=diverse)[0].face == Face()
+
+
 def test_parts_that_contradict_each_other_make_little_sense(asset, proposer):
     """On the two axes alone anger's colour goes with a smile, and a roar of laughter with drowsy lids."""
     search, parts = asset.search, asset.model.parts

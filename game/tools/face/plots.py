@@ -96,11 +96,12 @@ def _parts(fit: FaceFit, model: FaceModel) -> Figure | None:
         colours = matplotlib.colormaps["tab20"](np.linspace(0.0, 1.0, 20))
         for i, part in enumerate(fitted):
             colour = colours[(2 * i) % 20 + (2 * i // 20) % 2]
+            digits = "white" if float(colour[:3] @ (0.3, 0.59, 0.11)) < 0.6 else "black"
             outline = ellipse(part.mean, part.covariance)
             axes.fill(outline[:, 0], outline[:, 1], color=colour, alpha=0.10, lw=0)
             axes.plot(outline[:, 0], outline[:, 1], color=colour, lw=1.2, label=f"{i + 1} {part.part} ({part.ratings})")
             axes.annotate(
-                f"{i + 1}", part.mean, ha="center", va="center", fontsize=8.5, color="white", fontweight="bold",
+                f"{i + 1}", part.mean, ha="center", va="center", fontsize=8.5, color=digits, fontweight="bold",
                 bbox={"boxstyle": "circle,pad=0.18", "fc": colour, "ec": "none"},
             )  # fmt: skip
         axes.set_title(region, fontsize=13)

@@ -67,16 +67,16 @@ class Proposer:
     def __init__(self, search: FaceSearch) -> None:
         self.search = search
         regions = search.model.parts.regions
-        told = np.zeros((*search.counts, len(EMOTIONS) - 1))
+        told = np.zeros((*search.counts, len(EMOTIONS)))
         weakest = np.ones_like(told)
         lively, calm = np.zeros(search.counts), np.zeros(search.counts)
         for axis, region in enumerate(regions):
             along = tuple(-1 if i == axis else 1 for i in range(len(regions)))
-            affinity = region.affinity[:, :-1]
-            told = told + np.minimum(affinity / _FULL, 1.0).reshape(*along, 6) / len(regions)
+            affinity = region.affinity
+            told = told + np.minimum(affinity / _FULL, 1.0).reshape(*along, len(EMOTIONS)) / len(regions)
             fits = np.minimum(affinity / _CLEAR, 1.0)
             fits[0] = 1.0  # the standard part goes with everything
-            weakest = np.minimum(weakest, fits.reshape(*along, 6))
+            weakest = np.minimum(weakest, fits.reshape(*along, len(EMOTIONS)))
             lively = np.maximum(lively, region.mean[:, 1].reshape(along))
             calm = np.maximum(calm, -region.mean[:, 1].reshape(along))
         # (F,) at most 1: how far the parts say one and the same emotion, whether any of them contradicts it, and
