@@ -200,16 +200,17 @@ class Session:
         with self.told("book"):
             self._end_talk()
 
-    def _end_talk(self) -> None:
+    def booked(self) -> Afternoon:
+        """The afternoon with the talk that has ended; as it stands where none has, or a designer had a hand in it."""
         talk, marks = self.world.talk, self.world.marks
-        assert talk is not None
-        if self.designed:
-            self.assets = self.market.stalls[self.stall].assets
-            self.world = leave_talk(self.world)
-            return
+        if talk is None or not talk.ended or self.designed:
+            return self.afternoon
         readings = [Reading(self.stall, m.guess, m.label, m.face) for m in marks if m.guess]
         minutes = talk_minutes(self.market.bazaar, [m.act for m in marks[1:]])
-        self.afternoon = finish_talk(self.market.bazaar, self.assets.talk, self.afternoon, talk, minutes, readings)
+        return finish_talk(self.market.bazaar, self.assets.talk, self.afternoon, talk, minutes, readings)
+
+    def _end_talk(self) -> None:
+        self.afternoon = self.booked()
         self.assets = self.market.stalls[self.stall].assets
         self.world = leave_talk(self.world)
 
@@ -266,10 +267,11 @@ def take_back(session: Session) -> bool:
 
 
 def saved_game(session: Session) -> SavedGame:
-    """What a save holds of the running game; a talk that has ended is booked, not saved."""
+    """What a save holds of the running game; a talk that has ended is booked, not saved: whoever leaves while the last
+    words stand has had it all the same."""
     world = session.world
     if world.talk is None or world.talk.ended:
-        return SavedGame(session.afternoon, session.stall)
+        return SavedGame(session.booked(), session.stall)
     return SavedGame(session.afternoon, session.stall, world.talk, world.marks)
 
 
