@@ -208,15 +208,24 @@ class FontSet:
     def _wrap(self, text: str, role: str, size_px: int, width_px: float) -> list[str]:
         lines: list[str] = []
         for paragraph in text.split("\n"):
-            line = ""
-            for token in _tokens(paragraph):
-                if line and self.width((line + token).rstrip(), role, size_px) > width_px:
-                    lines.append(line.rstrip())
-                    line = token.lstrip()
-                else:
-                    line += token
-            lines.append(line.rstrip())
+            tokens = _tokens(paragraph)
+            full = self._broken(tokens, role, size_px, width_px, phrases=False)
+            kind = self._broken(tokens, role, size_px, width_px, phrases=True) if len(full) > 1 else full
+            # Phrases are kept whole where that costs no further line.
+            lines += kind if len(kind) == len(full) else full
         return lines
+
+    def _broken(self, tokens: list[str], role: str, size_px: int, width_px: float, *, phrases: bool) -> list[str]:
+        lines: list[str] = []
+        line: list[str] = []
+        for token in tokens:
+            if line and self.width("".join([*line, token]).rstrip(), role, size_px) > width_px:
+                at = _phrase_end([*line, token]) if phrases else len(line)
+                lines.append("".join(line[:at]).rstrip())
+                line = line[at:]
+                token = token if line else token.lstrip()
+            line.append(token)
+        return [*lines, "".join(line).rstrip()]
 
 
 def _bits(surface: pygame.Surface) -> bytes:
@@ -226,6 +235,34 @@ def _bits(surface: pygame.Surface) -> bytes:
 _NO_LINE_START = (
     "、。，．・：；？！゛゜ヽヾゝゞ々ー）］｝」』】〉》〕ぁぃぅぇぉっゃゅょゎァィゥェォッャュョヮ…‥!?,.:;)]}%"
 )
+
+
+_LOOK_BACK = 0.45
+"""So much of a line may be left empty for the sake of a phrase."""
+
+
+def _phrase_end(tokens: list[str]) -> int:
+    """Before which token a line of Japanese is broken best; the last one does not fit any more. A sentence or clause
+    ends, or a new word begins: kanji and katakana begin words, hiragana end them."""
+    best, found = len(tokens) - 1, 0.0
+    for at in range(len(tokens) - 1, round((1.0 - _LOOK_BACK) * len(tokens)), -1):
+        before, after = tokens[at - 1][-1], tokens[at][0]
+        if ord(before) <= 0x2E7F and ord(after) <= 0x2E7F:
+            worth = 1.0 if at == len(tokens) - 1 else 0.0
+        elif before in "。！？!?…　":
+            worth = 3.0
+        elif before in "、」』":
+            worth = 2.5
+        else:
+            worth = 1.5 if _is_hiragana(before) and not _is_hiragana(after) and after.isalnum() else 0.0
+        worth -= (len(tokens) - 1 - at) / len(tokens)
+        if worth > found:
+            best, found = at, worth
+    return best
+
+
+def _is_hiragana(letter: str) -> bool:
+    return "\u3041" <= letter <= "\u309f"
 
 
 def _tokens(text: str) -> list[str]:

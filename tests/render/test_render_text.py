@@ -66,6 +66,18 @@ def test_japanese_wraps_anywhere_but_before_closing_marks(japanese: FontSet) -> 
     assert all(row[0] not in "。、" for row in rows)
 
 
+def test_japanese_breaks_where_a_phrase_ends_if_that_costs_no_line(japanese: FontSet) -> None:
+    clause = "男の子が一時間も独楽を回してさ、"
+    rows = japanese.wrap(clause + "どんぐりで払ってった。いいどんぐりだよ!", "body", 24, 24 * 23)
+    assert rows[0] == clause
+    rows = japanese.wrap("そのセーター、通りじゅうが明るくなりますね。", "body", 18, 300)
+    assert rows == ["そのセーター、通りじゅうが", "明るくなりますね。"]
+    solid = "ア" * 19
+    assert [len(row) for row in japanese.wrap(solid, "body", 24, 24 * 10 + 6)] == [10, 9], (
+        "nothing to go by: full lines"
+    )
+
+
 def test_wrapping_keeps_line_breaks(english: FontSet) -> None:
     assert english.wrap("a\n\nb", "body", 24, 500) == ["a", "", "b"]
 

@@ -18,7 +18,7 @@ def draw_units(session: Session, canvas: Canvas) -> None:
     """One row per layer: how far through its duration the unit is, its index, its name."""
     world, s = session.world, session.strings
     library, decisions = session.assets.planner.library, world.body.decisions
-    top = canvas.height - 262.0
+    top = canvas.height - 356.0
     canvas.panel(Rect(14, top, 366, 100), PALETTE["shade"], radius=14)
     for row, layer in enumerate(session.assets.planner.tables.layers):
         y = top + 10 + row * 29
