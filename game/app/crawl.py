@@ -5,8 +5,9 @@ examples:
   run_game.py crawl toys --language ja --json
   run_game.py crawl flea --out findings        a page with a sketch of every picture in which something is wrong
 
-Every node, line and choice is laid out as the game would, in both languages and at the smallest and largest size of
-text, without drawing the scene. Exit codes: 0 nothing found, 1 findings, 2 bad input.
+Every node, line and wording of a choice, whatever its conditions, is laid out as the game would, in both languages and
+at the smallest and largest size of text, without drawing the scene; the hands are those of the stall's own person.
+Exit codes: 0 nothing found, 1 findings, 2 bad input.
 """
 
 from __future__ import annotations

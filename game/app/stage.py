@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from game.app.avatar import Avatar
     from game.app.world import Body
 
-__all__ = ["Puppet", "StageAssets", "StageShow", "load_stage"]
+__all__ = ["Puppet", "StageAssets", "StageShow", "load_stage", "raised"]
 
 _HEAD = REFERENCE.index["head"]
 _STALL_SEEN_M, _FACE_SEEN_M = 1.25, 0.80
@@ -78,12 +78,17 @@ class StageAssets:
 
     def framed(self, camera: Camera) -> Camera:
         """The camera as high as the person asks: a shot of the face follows the head, one of the stall stays."""
-        seen_m = 2.0 * camera.distance_m(camera.target) * tan(radians(camera.fov_deg / 2.0))
-        share = min(max((_STALL_SEEN_M - seen_m) / (_STALL_SEEN_M - _FACE_SEEN_M), 0.0), 1.0)
-        if share == 0.0 or self.lift_m == 0.0:
-            return camera
-        (ex, ey, ez), (tx, ty, tz) = camera.eye, camera.target
-        return replace(camera, eye=(ex, ey + share * self.lift_m, ez), target=(tx, ty + share * self.lift_m, tz))
+        return raised(camera, self.lift_m)
+
+
+def raised(camera: Camera, lift_m: float) -> Camera:
+    """A camera for a person whose head is so much higher than the reference's."""
+    seen_m = 2.0 * camera.distance_m(camera.target) * tan(radians(camera.fov_deg / 2.0))
+    share = min(max((_STALL_SEEN_M - seen_m) / (_STALL_SEEN_M - _FACE_SEEN_M), 0.0), 1.0)
+    if share == 0.0 or lift_m == 0.0:
+        return camera
+    (ex, ey, ez), (tx, ty, tz) = camera.eye, camera.target
+    return replace(camera, eye=(ex, ey + share * lift_m, ez), target=(tx, ty + share * lift_m, tz))
 
 
 def load_stage(

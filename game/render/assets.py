@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -107,10 +108,13 @@ def load_picture(path: Path) -> NDArray[np.uint8]:
 
 
 def save_png(path: Path, pixels: NDArray[np.uint8]) -> None:
-    """Write (h, w, 3) uint8 pixels as a PNG file."""
+    """Write (h, w, 3) uint8 pixels as a PNG file. Raises OSError where there is no room for it."""
     height, width = pixels.shape[:2]
     surface = pygame.image.frombuffer(np.ascontiguousarray(pixels).tobytes(), (width, height), "RGB")
-    pygame.image.save(surface, str(path), "png")
+    # SDL says nothing of a full disk: it only encodes, and the file is ours to write.
+    encoded = io.BytesIO()
+    pygame.image.save(surface, encoded, "picture.png")
+    path.write_bytes(encoded.getbuffer())
 
 
 def _mesh_nodes(file: GltfFile) -> Iterator[tuple[GltfNode, Mapping[str, Any]]]:

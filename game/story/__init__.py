@@ -3,6 +3,7 @@
 from game.story.acts import ActTable, load_acts
 from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Timer, Warp
 from game.story.engine import advance, resume
+from game.story.filling import rehearse_choice, rehearse_line
 from game.story.findings import CODES, Finding, Findings
 from game.story.fix import fix_file
 from game.story.lint import lint_files
@@ -52,6 +53,8 @@ __all__ = [
     "load_person",
     "load_script",
     "memory_of",
+    "rehearse_choice",
+    "rehearse_line",
     "restore",
     "resume",
     "save",

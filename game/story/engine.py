@@ -10,12 +10,12 @@ from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulu
 from game.story.chance import pick_weighted, uniform
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
-from game.story.forms import PERSON_SLOTS, number_text, person_word
+from game.story.filling import filled
 from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, Script
 from game.story.prepared import FIXED_NAMES, ReadyLine, prepared
 from game.story.state import StoryState
-from game.story.text import Text, fill
-from game.story.vocabulary import ENV, OUTCOMES, Value, environment
+from game.story.text import Text
+from game.story.vocabulary import OUTCOMES, Value, environment
 
 __all__ = ["advance", "resume"]
 
@@ -261,35 +261,7 @@ class _Run:
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
         """The words with the names in braces filled in, ``keep`` left as it stands."""
-        if not text.names or text.names == {keep}:
-            return text
-
-        def value(name: str, language: str) -> str | None:
-            if name in PERSON_SLOTS:
-                person = self.script.person
-                return person_word(name, person.name.get(language), person.pronoun, language)
-            if name == keep or name not in self.names:
-                return None
-            if name == "item":
-                return self.script.items[self.state.item].name.get(language)
-            found = self.names[name]
-            if name in ENV and ENV[name].money and not isinstance(found, str):
-                return self.ready.money(found).get(language)
-            if isinstance(found, float):
-                return number_text(found)
-            return str(found).lower() if isinstance(found, bool) else found
-
-        return Text(
-            fill(text.en, lambda name: value(name, "en"), self.number_of, "en"),
-            fill(text.ja, lambda name: value(name, "ja"), self.number_of, "ja"),
-        )
-
-    def number_of(self, name: str) -> float | None:
-        """What decides a plural: a number, or how many a pronoun speaks of."""
-        if name == "they":
-            return 2.0 if self.script.person.pronoun == "they" else 1.0
-        found = self.names.get(name)
-        return found if isinstance(found, float) else None
+        return filled(self.script, self.state.item, self.names, text, keep=keep)
 
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ChoiceDef) -> bool:

@@ -124,6 +124,12 @@ def flea() -> Script:
     return load_script(DIALOGUE / "flea.yaml")
 
 
+@pytest.fixture(scope="session")
+def player() -> type[Player]:
+    """Starts a talk straight or reloaded, as told: ``player(script, reload, seed=…, memory=…)``."""
+    return Player
+
+
 @pytest.fixture(params=["straight", "reloaded"])
 def talk(request: pytest.FixtureRequest) -> Callable[..., Player]:
     """Starts a talk: ``talk(script, item=…, seed=…, env=…)``. Every test with it runs twice."""

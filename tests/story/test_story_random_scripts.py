@@ -9,7 +9,8 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from game.story import ACTS, Script, restore, save
+from game.core.errors import Where
+from game.story import ACTS, Memory, Script, memory_of, restore, save
 from game.story.findings import Findings
 from game.story.reader import read_script
 
@@ -153,6 +154,32 @@ def test_random_scripts_wait_or_end_and_never_break(talk, text, seed):
         assert any(choice.available for choice in beat.choices)
         assert restore(script, json.loads(json.dumps(save(player.state)))) == player.state
         player.random_move(rng)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=_RELAXED)
+@given(scripts(), st.integers(0, 2**32))
+def test_saved_and_loaded_anywhere_a_talk_goes_on_as_if_nothing_had_been(player, text, seed):
+    """Straight, and through a save at every step: the same beats, the same end, the same memory of the stall. Twice
+    over: the second visit begins with what the first one left."""
+    script, findings = _read(text)
+    if script is None or findings.errors:
+        return
+    left = []
+    for reload in (False, True):
+        memory, told = None, []
+        for visit in range(2):
+            one = player(script, reload, seed=seed + visit, memory=memory)
+            rng = random.Random(seed)
+            for _ in range(8):
+                if one.beat.ended:
+                    break
+                one.random_move(rng)
+            told.append(one.beats)
+            memory = memory_of(script, one.state)
+            if reload:
+                memory = Memory.from_dict(json.loads(json.dumps(memory.to_dict())), Where("memory"))
+        left.append((told, memory))
+    assert left[0] == left[1]
 
 
 @settings(max_examples=25, deadline=None)

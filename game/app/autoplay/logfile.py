@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -57,31 +59,46 @@ class LogFile:
     def write(self, rows: bytes) -> None:
         """The rows of the next job."""
         assert self._file is not None
-        try:
+        with self._told():
             self._file.write(rows)
-        except OSError as error:
-            raise BadInput("--out", expected="room to write", seen=f"{self.path}: {error.strerror}") from None
 
     def keep(self, run: dict[str, Any]) -> None:
         """Remember how far the run is."""
         assert self._file is not None
-        self._file.flush()
-        text = json.dumps({"version": STATE_VERSION, "key": self.key, "bytes": self._file.tell(), "run": run})
         fresh = self.state.with_name(self.state.name + ".new")
-        fresh.write_text(text, encoding="utf-8")
-        os.replace(fresh, self.state)
+        with self._told():
+            self._file.flush()
+            text = json.dumps({"version": STATE_VERSION, "key": self.key, "bytes": self._file.tell(), "run": run})
+            try:
+                fresh.write_text(text, encoding="utf-8")
+                os.replace(fresh, self.state)
+            except OSError:
+                fresh.unlink(missing_ok=True)
+                raise
 
     def end(self) -> None:
         """All is written: the part becomes the log."""
-        self.stop()
-        os.replace(self.part, self.path)
-        self.state.unlink(missing_ok=True)
+        assert self._file is not None
+        with self._told():
+            self._file.flush()
+            self.stop()
+            os.replace(self.part, self.path)
+            self.state.unlink(missing_ok=True)
 
     def stop(self) -> None:
-        """Close; what was kept stays for ``--resume``."""
+        """Close; what was kept stays for ``--resume``, which cuts off what was written after it."""
         if self._file is not None:
-            self._file.close()
+            with contextlib.suppress(OSError):
+                self._file.close()
             self._file = None
+
+    @contextlib.contextmanager
+    def _told(self) -> Iterator[None]:
+        """A full or lost disk is told in one line."""
+        try:
+            yield
+        except OSError as error:
+            raise BadInput("--out", expected="room to write", seen=f"{self.path}: {error.strerror}") from None
 
     def drop(self) -> None:
         """Nothing worth keeping was written."""

@@ -166,13 +166,20 @@ class Recorder:
                 self._give_up(error)
 
     def _give_up(self, error: OSError) -> None:
-        """The disk is full, or gone: the game goes on without a recording."""
-        self.trouble = f"{self.path}: recording ends ({error.strerror})"
+        """The disk is full, or gone: the game goes on without a recording; what there is of it is kept."""
         file, self._file = self._file, None
         if file is not None:
             with contextlib.suppress(OSError):
                 file.close()
-        self.part.unlink(missing_ok=True)
+        kept = ""
+        with contextlib.suppress(OSError):
+            if self.part.stat().st_size:
+                left = _crashed(self.path)
+                os.replace(self.part, left)
+                kept = f"; up to there it lies in {left.name}"
+            else:
+                self.part.unlink()
+        self.trouble = f"{self.path}: recording ends ({error.strerror}){kept}"
 
     def close(self, session: Session | None = None, why: str = "closed") -> None:
         """Finish the file and put it in its place."""
@@ -208,4 +215,8 @@ def _keep_crashed(path: Path) -> None:
     """What a play left that did not end well lies under a name one finds, instead of piling up unseen."""
     left = sorted(path.parent.glob(f".{path.name}.*.part"), key=lambda part: part.stat().st_mtime)
     for part in left:
-        os.replace(part, path.with_name(f"{path.stem}-crashed{path.suffix}"))
+        os.replace(part, _crashed(path))
+
+
+def _crashed(path: Path) -> Path:
+    return path.with_name(f"{path.stem}-crashed{path.suffix}")

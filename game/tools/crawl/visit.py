@@ -13,19 +13,21 @@ from game.app.session import Screen, Session
 from game.app.settings import Settings
 from game.app.step import StepAssets, new_world
 from game.app.strings import load_strings
-from game.app.talk import TalkState, start_talk, warp_talk
+from game.app.talk import TalkState, start_talk, talk_env, warp_talk
 from game.app.world import World, enter_talk
 from game.core.errors import BadInput
 from game.render import FontSet
+from game.story import STANDING_ACTS, Beat, Spoken, rehearse_choice, rehearse_line
 from game.story import Choice as StoryChoice
-from game.story import Spoken
 from game.tools.crawl.paper import Box, Fault, PaperCanvas, PaperHud
 
-__all__ = ["Finding", "Look", "crawl_stall"]
+__all__ = ["Finding", "Look", "beats_of", "crawl_stall"]
 
 SEEDS = 8
 """Pools are drawn: so many draws are tried to see every choice of a node."""
 SCALES = (1.0, 2.0)
+MOST_OFFERED = 4
+"""Choices on the table at once, beside the offer, waiting and going."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ def crawl_stall(stall: str, languages: Iterable[str], scales: Iterable[float] = 
     assets = load_step_assets(stall, body=False)
     found: dict[tuple[str, str, str, float], Finding] = {}
     count = 0
-    nodes = {node: _beats(assets, node) for node in assets.talk.script.nodes}
+    nodes = {node: beats_of(assets, node) for node in assets.talk.script.nodes}
     for language in languages:
         fonts = FontSet.for_language(language)
         for scale in scales:
@@ -77,23 +79,48 @@ def _session(assets: StepAssets, look: Look) -> Session:
     return session
 
 
-def _beats(assets: StepAssets, node: str) -> list[TalkState]:
-    """A node as it may be met: with different draws of its pools, until nothing new comes."""
+def beats_of(assets: StepAssets, node: str) -> list[TalkState]:
+    """A node as it may be met: with different draws of its pools, until nothing new comes; then, in the place of what
+    can be said there, everything that no draw brought: lines and choices behind conditions, other wordings."""
     script = assets.talk.script
     item = next(iter(script.items))
     states: list[TalkState] = []
     seen: set[str] = set()
+    begun = start_talk(assets.talk, item, 0, purse=9000)
     for seed in range(SEEDS):
         try:
-            talk = warp_talk(assets.talk, start_talk(assets.talk, item, seed, purse=9000), node)
+            talk = warp_talk(assets.talk, replace(begun, story=replace(begun.story, seed=seed)), node)
         except BadInput:
-            return states
+            break
         new = {choice.id for choice in talk.beat.choices} | {line.id for line in talk.beat.lines}
         if not new - seen:
             break
         seen |= new
         states.append(talk)
-    return states
+    base = states[0] if states else begun
+    return [*states, *(replace(base, beat=beat) for beat in _hidden(assets, base, node, states))]
+
+
+def _hidden(assets: StepAssets, base: TalkState, node: str, states: list[TalkState]) -> Iterator[Beat]:
+    """Beats with what no draw brought: every line, every wording of every choice, as many as are offered at once."""
+    script, env = assets.talk.script, talk_env(base, assets.talk)
+    place = script.nodes[node]
+    said = {line.id for talk in states for line in talk.beat.lines}
+    lines = [
+        rehearse_line(script, base.item, line, env) for say in place.says for line in say.lines if line.id not in said
+    ]
+    offered = {(choice.id, choice.en) for talk in states for choice in talk.beat.choices}
+    wordings = [
+        rehearse_choice(script, base.item, choice, line, env)
+        for choice in [c for pool in place.pools for c in script.pools[pool]] + list(place.choices)
+        for line in choice.texts
+    ]
+    hidden = [choice for choice in wordings if (choice.id, choice.en) not in offered]
+    standing = tuple(choice for choice in base.beat.choices if choice.act in STANDING_ACTS)
+    if lines:
+        yield replace(base.beat, node=node, lines=tuple(lines))
+    for at in range(0, len(hidden), MOST_OFFERED):
+        yield replace(base.beat, node=node, lines=(), choices=(*hidden[at : at + MOST_OFFERED], *standing))
 
 
 def _pictures(session: Session, nodes: dict[str, list[TalkState]]) -> Iterator[tuple[str, Screen, World]]:
