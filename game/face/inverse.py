@@ -22,6 +22,23 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+BLEND_COST = 10.0
+"""Of two feelings at once mouth and colour show the stronger, brows and eyes tell of the other: fear behind joy is a
+laugh under anxious brows. On two axes alone happy eyes over chattering teeth come to the same point. So much score may
+a mouth or a colour lose that says only the weaker."""
+
+
+def _blend_cost(affinity: Floats, emotion: Floats) -> Floats:
+    """Cost (n,) of parts with affinities (n, 7) for an emotion (7,); 0 where one feeling stands alone."""
+    six = emotion[:6]
+    together = float(six.sum())
+    if together <= 0.0:
+        return np.zeros(len(affinity))
+    mixed = (1.0 - float(six.max()) / together) * min(together, 1.0)
+    told = affinity @ emotion**3
+    return np.asarray(BLEND_COST * mixed * (1.0 - told / told.max()))
+
+
 @dataclass(frozen=True)
 class Proposal:
     """A proposed face: its parts, its score (higher is better) and its own Gaussian."""
@@ -95,7 +112,10 @@ class FaceSearch:
         for axis, region in enumerate(parts.regions):
             shape = [1] * len(self.counts)
             shape[axis] = -1
-            score = score + (factor * (region.affinity @ values)).reshape(shape)
+            gain = factor * (region.affinity @ values)
+            if region.name in ("mouth", "skin"):
+                gain -= _blend_cost(region.affinity, values)
+            score = score + gain.reshape(shape)
         return score.reshape(-1)
 
     def order(self, score: Floats, top: int, locked: Face | None = None, free: tuple[str, ...] = ()) -> Ints:

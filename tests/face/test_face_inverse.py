@@ -71,6 +71,21 @@ def test_neutral_is_the_standard_face_and_faint_feelings_stay_close(asset):
         assert sum(part != "standard" for part in _best(asset, **{name: 0.9}).parts) >= 3
 
 
+def test_of_two_feelings_the_mouth_shows_the_stronger(asset):
+    """Laughing eyes over chattering teeth say nothing; a laugh under anxious brows is a nervous one."""
+    regions = asset.model.parts.regions
+    for strong, weak in (("joy", "fear"), ("joy", "sadness"), ("joy", "disgust"), ("sadness", "joy"), ("fear", "joy")):
+        face = _best(asset, **{strong: 0.55, weak: 0.35})
+        told = {
+            r.name: dict(zip(EMOTIONS, r.affinity[r.index(p)], strict=True))
+            for r, p in zip(regions, face.parts, strict=True)
+        }
+        for region in ("mouth", "skin"):
+            assert told[region][strong] > told[region][weak], (strong, weak, face)
+        if strong == "joy":
+            assert max(told["eyes"][weak], told["eyebrows"][weak]) > 0.3, (strong, weak, face)
+
+
 def test_ties_go_to_the_lower_number(asset):
     score = np.zeros(len(asset.search))
     score[[700, 40, 9000]] = 1.0
