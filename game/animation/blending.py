@@ -18,7 +18,7 @@ from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation.collision import TABLE_BACK_Z_M
 from game.animation.motion_bank import MotionBank
-from game.animation.playback import Layered, Playback
+from game.animation.playback import Layered, Playback, of_some
 from game.core.humanoid import TABLE_TOP_M
 
 __all__ = ["Blend", "advance_blend", "compose", "start_blend", "switch"]
@@ -45,11 +45,9 @@ EDGE_LIFT_M, EDGE_CLEAR_M = 0.05, 0.13
 """Between below and above the table a hand goes round its edge: it bows up by this and what it lacks of this height."""
 ARM_M = 0.42
 
-# Polynomials in u of the two curves and of their slopes (_add_remains): coefficients by (power, curve).
-_VALUE = np.array([[1, 0], [3, 1], [6, 3]], dtype=np.float32)[:, :, None, None]
-_SLOPE = np.array([[0, 1], [0, 2], [-30, -15]], dtype=np.float32)[:, :, None, None]
-for _table in (_VALUE, _SLOPE):
-    _table.setflags(write=False)
+# Polynomials in u of the two curves and of their slopes (_add_remains): coefficients by (power, 0 | slope, curve).
+_CURVES = np.array([[[1, 0], [0, 1]], [[3, 1], [0, 2]], [[6, 3], [-30, -15]]], dtype=np.float32)[..., None, None]
+_CURVES.setflags(write=False)
 
 _TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
 _TOUCHED.setflags(write=False)
@@ -129,6 +127,52 @@ def switch(
 ) -> Blend:
     """Take up new sources. events: (n, L) layers whose source jumped; base_s: (n,) length of a middling transition;
     arc: (n,) bow of the hands' ways; contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
+    who = np.flatnonzero(events.any(axis=1))
+    if len(who) == len(events):
+        return _switched(bank, state, playback, events, values, base_s, arc, contact_frames, posture_layer, dt_s)
+    some = _switched(
+        bank,
+        _some(state, who),
+        playback.of(who),
+        events[who],
+        of_some(values, who, len(events)),
+        base_s[who],
+        arc[who],
+        contact_frames[who],
+        posture_layer,
+        dt_s,
+    )
+    source, age_s = {}, state.age_s.copy()
+    for name, old in vars(state.source).items():
+        source[name] = old.copy()
+        source[name][_at(name, who)] = getattr(some.source, name)
+    age_s[who] = some.age_s
+    return replace(state, source=Source(**source), age_s=age_s)
+
+
+def _at(name: str, who: NDArray[np.intp]) -> Any:
+    """Where characters stand in an array of Source."""
+    return (slice(None), who) if name in ("offset", "ends_s") else who
+
+
+def _some(state: Blend, who: NDArray[np.intp]) -> Blend:
+    source = Source(**{name: array[_at(name, who)] for name, array in vars(state.source).items()})
+    return Blend(source, state.age_s[who], state.row[who], state.speed[who], state.known)
+
+
+def _switched(
+    bank: MotionBank,
+    state: Blend,
+    playback: Playback,
+    events: Bools,
+    values: Layered,
+    base_s: Floats,
+    arc: Floats,
+    contact_frames: Floats,
+    posture_layer: int,
+    dt_s: float,
+) -> Blend:
+    """switch, of characters who all have an event."""
     layers, old = events.shape[1], state.source
     owned = bank.owned[playback.unit] & playback.active[:, :, None]
     gate, frame = _gates(bank, playback, owned, posture_layer)
@@ -176,9 +220,9 @@ def _add_remains(source: Source, age_s: Floats, row: Floats, speed: Floats) -> N
     u = np.minimum(age_s / source.ends_s, 1.0)
     v = 1.0 - u
     square = v * v
-    curves = np.empty((2, *u.shape), dtype=np.float32)
-    np.multiply(square * v, _VALUE[0] + u * (_VALUE[1] + u * _VALUE[2]), out=curves[0])
-    np.divide(square * (_SLOPE[0] + u * (_SLOPE[1] + u * _SLOPE[2])), source.ends_s, out=curves[1])
+    curves = _CURVES[0] + u * (_CURVES[1] + u * _CURVES[2])
+    curves[0] *= square * v
+    curves[1] *= square / source.ends_s
     remains = (curves.take(ch.PART_OF_CHANNEL, axis=-1) * source.offset).sum(axis=1)
     row += remains[0]
     speed += remains[1]

@@ -51,6 +51,7 @@ _MIDDLE = np.array([np.subtract(_REST[j], c) / r for j, c, r in BODY], dtype=np.
 _REACH = np.tile(POINT_RADII - TOLERANCE_M, 2)
 # Where the push's two ramps begin: their squares' difference over 4 × SOFTNESS_M is a smooth max(depth, 0).
 _RAMPS = np.stack([_REACH + SOFTNESS_M, _REACH - SOFTNESS_M])[:, None].astype(np.float32)
+_NEAR = (_REACH + SOFTNESS_M).astype(np.float32)
 _TALLEST = float(POINT_RADII.max()) + TABLE_CLEARANCE_M
 _TABLE_RADII = POINT_RADII + np.float32(TABLE_CLEARANCE_M)
 # (height, depth) of a point × _TABLE_SIDE + _TABLE_EDGE: how far up and how far back the table's surfaces are.
@@ -73,7 +74,7 @@ def _by_hand() -> Floats:
 
 
 _SUMS, _BY_HAND = _sums(), _by_hand()
-for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SUMS, _MIDDLE, _REACH, _RAMPS, _BY_HAND, _TABLE_RADII):
+for _array in (POINT_RADII, TOLERANCE_M, _INVERSE, _SUMS, _MIDDLE, _REACH, _RAMPS, _NEAR, _BY_HAND, _TABLE_RADII):
     _array.setflags(write=False)
 for _array in (_TABLE_SIDE, _TABLE_EDGE):
     _array.setflags(write=False)
@@ -127,31 +128,45 @@ def _push_from_body(maps: Floats, points: Floats) -> Floats | None:
     """Away from the body; None where nothing is near it."""
     n = len(points)
     push = np.zeros((n, _HANDS, 3), dtype=np.float32)
-    summing: Floats | None = None
-    for _ in range(PASSES):
+    seen = _distance(maps, points)
+    close = seen[1] < _NEAR
+    if not np.count_nonzero(close):
+        return None
+    # In a crowd few hands touch anything.
+    near = np.flatnonzero(close.any(axis=(1, 2)))
+    if len(near) == n:
+        _push_again(maps, points.copy(), seen, push)
+        return push
+    some = push[near]
+    at, distance, slope = seen
+    _push_again(maps[near], points[near], (at[near], distance[near], slope[near]), some)
+    push[near] = some
+    return push
+
+
+def _push_again(maps: Floats, points: Floats, seen: tuple[Floats, Floats, Floats], push: Floats) -> None:
+    """Add to push (n, 2, 3), and to points, what contacts with the body ask for; seen: _distance of the points."""
+    n = len(points)
+    summing = _summing(maps)
+    hands = points.reshape(n, _HANDS, _POINTS, 4)
+    for again in range(PASSES):
         # Contacts that pull apart leave something inside: what is left is pushed again.
-        at, distance, slope = _distance(maps, points)
+        at, distance, slope = _distance(maps, points) if again else seen
         ramps = np.maximum(_RAMPS - distance[:, None], 0.0)
-        # The second ramp begins after the first.
-        if not np.count_nonzero(ramps):
-            break
-        if summing is None:
-            summing = _summing(maps)
-            points = points.copy()
         ramps *= ramps
         depth = ramps[:, 0] - ramps[:, 1]
         square = depth * depth
         # The deepest contact leads, others join in as they come near: no switching. Their weights are cubes of the
         # depth; the pushes are added up in the ellipsoids' frames, for each hand, and then turned to model space.
         parts = np.empty((n, 24, 14), dtype=np.float32)
-        pushes = at.reshape(n, 6, 3, 14) * (square * square / slope)[:, :, None]
-        parts[:, :18] = pushes.reshape(n, 18, 14)
+        np.multiply(
+            at.reshape(n, 6, 3, 14), (square * square / slope)[:, :, None], out=parts[:, :18].reshape(n, 6, 3, 14)
+        )
         np.multiply(square, depth, out=parts[:, 18:])
         total = (parts @ _BY_HAND).swapaxes(-1, -2) @ summing
         step = total[..., :3] / np.maximum(total[..., 3:], _LEAST)
         push += step
-        points.reshape(n, _HANDS, _POINTS, 4)[..., :3] += step[:, :, None]
-    return None if summing is None else push
+        hands[..., :3] += step[:, :, None]
 
 
 def _summing(maps: Floats) -> Floats:

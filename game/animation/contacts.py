@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation import collision, figure
+from game.animation.chains import chains_of, to_model
 from game.core.humanoid import REFERENCE
 from game.core.springs import half_life_to_damping
 
@@ -39,6 +40,8 @@ def slot(joint: str) -> int:
 FRAMES: NDArray[np.intp] = np.array([0, *(slot(name) for name in ch.CONTACT_FRAMES[1:])])
 """(4,) places of CONTACT_FRAMES in body_matrices; the table does not move, so it is at model space's origin."""
 
+# The table and the palms stand alone, at depth 0 as the hips.
+_CHAINS = chains_of(np.append(np.full(_FIRST, -1), np.where(figure.PARENTS < 0, -1, figure.PARENTS + _FIRST)))
 _QUATERNIONS = np.concatenate([ch.JOINTS + np.arange(2), figure.FIGURE])
 _OFFSET = REFERENCE.rest_translation[figure.FIGURE[1:]].astype(np.float32)
 _BODY = np.array([slot(name) for name in collision.BODY_JOINTS])
@@ -66,7 +69,7 @@ def body_matrices(turns: Floats, places: Floats) -> Floats:
     bl.affine(turns.take(_QUATERNIONS, axis=1), out=matrices.reshape(n, SLOTS, 16)[:, 1:])
     matrices[:, 1:4, :3, 3] = places.reshape(n, 3, 3)
     matrices[:, 4:, :3, 3] = _OFFSET
-    figure.figure_matrices(matrices, _FIRST)
+    to_model(matrices, _CHAINS)
     return matrices
 
 

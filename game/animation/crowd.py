@@ -6,18 +6,14 @@ faster. The crowd is cut into pieces that stay in the cache.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from game.animation.pose import Pose
+from game.animation.skin_plan import SkinPlan
 
-if TYPE_CHECKING:
-    from game.animation.skinning import Rig
-
-__all__ = ["crowd_matrices"]
+__all__ = ["PIECE", "crowd_matrices"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -25,13 +21,11 @@ PIECE = 128
 """Characters per piece."""
 
 
-def crowd_matrices(rig: Rig, pose: Pose) -> Floats:
-    """(n, K, 4, 4) skin matrices of poses fitted to the rig (rig.fit), springs at rest; the same as
-    rig.skin_matrices(rig.joint_matrices(pose)) of the poses before the fit."""
-    n, columns = len(pose), len(rig.skin_joint)
-    plan = _plan(rig)
+def crowd_matrices(plan: SkinPlan, rotation: Floats, root: Floats) -> Floats:
+    """rotation: (n, M, 4) of the plan's joints, root: (n, 3) local translation of the hips -> (n, K, 4, 4) skin
+    matrices."""
+    n, columns = len(rotation), len(plan.column)
     result = np.empty((n, columns, 16), dtype=np.float32)
-    rotation, root = rig.local_rotations(pose).take(plan.order, axis=1), rig.root_translation(pose)
     for start in range(0, n, PIECE):
         piece = slice(start, min(start + PIECE, n))
         quaternion = np.ascontiguousarray(rotation[piece].transpose(2, 1, 0))
@@ -43,40 +37,13 @@ def crowd_matrices(rig: Rig, pose: Pose) -> Floats:
     return result.reshape(n, columns, 4, 4)
 
 
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """A rig's joints by depth, so that a level is a slice. order: (J,) joints; levels: slice and, in that order, the
-    parents; shift: (3, J, 1) rest translations; hips and skin columns in that order; bind: (3, 4, K, 1)."""
-
-    order: NDArray[np.intp]
-    levels: tuple[tuple[slice, NDArray[np.intp]], ...]
-    shift: Floats
-    hips: int
-    column: NDArray[np.intp]
-    bind: Floats
-
-
-def _plan(rig: Rig) -> _Plan:
-    skeleton = rig.skeleton
-    order = np.concatenate(skeleton.levels)
-    place = np.empty(len(order), dtype=np.intp)
-    place[order] = np.arange(len(order))
-    levels, at = [], 0
-    for level in skeleton.levels:
-        levels.append((slice(at, at + len(level)), place[skeleton.parents[level]]))
-        at += len(level)
-    shift = skeleton.rest_translation[order].T.astype(np.float32)[:, :, None]
-    bind = np.ascontiguousarray(rig.inverse_bind[:, :3].transpose(1, 2, 0))[..., None]
-    return _Plan(order, tuple(levels), shift, int(place[rig.hips]), place[rig.skin_joint], bind)
-
-
-def _model(plan: _Plan, q: Floats, root: Floats) -> tuple[Floats, Floats]:
-    """q: (4, J, m) local, root: (3, m) -> model-space rotations (3, 3, J, m) and positions (3, J, m)."""
+def _model(plan: SkinPlan, q: Floats, root: Floats) -> tuple[Floats, Floats]:
+    """q: (4, M, m) local, root: (3, m) -> model-space rotations (3, 3, M, m) and positions (3, M, m)."""
     turn = _turns(q)
     place = np.empty((3, *q.shape[1:]), dtype=np.float32)
-    place[:] = plan.shift
+    place[:] = plan.shift.T[:, :, None]
     place[:, plan.hips] = root
-    for level, parent in plan.levels[1:]:
+    for level, parent in plan.chains.levels:
         above, here, offset = turn.take(parent, axis=2), turn[:, :, level], place[:, level]
         product, moved = above[:, 0, None] * here[None, 0], above[:, 0] * offset[0]
         for k in (1, 2):
@@ -108,13 +75,13 @@ def _turns(q: Floats) -> Floats:
     return turn
 
 
-def _skinned(plan: _Plan, turn: Floats, place: Floats) -> Floats:
+def _skinned(plan: SkinPlan, turn: Floats, place: Floats) -> Floats:
     """Model-space (3, 3, J, m), (3, J, m) -> (4, 4, K, m) skin matrices."""
     turn = turn.take(plan.column, axis=2)
     skin = np.empty((4, 4, *turn.shape[2:]), dtype=np.float32)
-    top = np.multiply(turn[:, 0, None], plan.bind[None, 0], out=skin[:3])
+    top = np.multiply(turn[:, 0, None], plan.by_element[None, 0], out=skin[:3])
     for k in (1, 2):
-        top += turn[:, k, None] * plan.bind[None, k]
+        top += turn[:, k, None] * plan.by_element[None, k]
     top[:, 3] += place.take(plan.column, axis=1)
     skin[3, :3], skin[3, 3] = 0.0, 1.0
     return skin

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from game.animation.chains import chains_of, to_model
 from game.core.humanoid import REFERENCE
 
-__all__ = ["BONES", "BONE_LENGTHS", "ENDS", "FEET_WORLD", "FIGURE", "WHERE", "figure_matrices"]
+__all__ = ["BONES", "BONE_LENGTHS", "ENDS", "FEET_WORLD", "FIGURE", "PARENTS", "WHERE", "figure_matrices"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -43,28 +44,13 @@ FEET_WORLD = REFERENCE.rest_model[ENDS[2, 2:], :3, 3].astype(np.float32)
 """(2, 3) where the ankles stand."""
 
 
-def _plan() -> tuple[tuple[int, NDArray[np.intp]], ...]:
-    """Per pass: the first joint it moves on, and for it and all after it the joint they are still relative to.
-
-    A pass doubles the way behind a joint's matrix (parent, then grandparent, ...): three passes where levels, one
-    after the other, would be six, and a pass costs a call more than it costs matrices.
-    """
-    parent = np.array([-1, *(_NAMES.index(REFERENCE.names[REFERENCE.parents[j]]) for j in FIGURE[1:])])
-    plan, relative = [], parent
-    while relative.max() >= 0:
-        first = int(np.argmax(relative >= 0))
-        plan.append((first, relative[first:].copy()))
-        relative = np.where(relative >= 0, relative[np.maximum(relative, 0)], -1)
-    return tuple(plan)
-
-
-_PLAN = _plan()
-for _array in (FIGURE, BONES, BONE_LENGTHS, ENDS, FEET_WORLD, *(relative for _, relative in _PLAN)):
+PARENTS = np.array([-1, *(_NAMES.index(REFERENCE.names[REFERENCE.parents[joint]]) for joint in FIGURE[1:])])
+"""(19,) each joint's parent in FIGURE."""
+_CHAINS = chains_of(PARENTS)
+for _array in (FIGURE, BONES, BONE_LENGTHS, ENDS, FEET_WORLD, PARENTS):
     _array.setflags(write=False)
 
 
-def figure_matrices(local: Floats, first: int = 0) -> None:
-    """(n, first + 19, 4, 4) float32 local matrices, FIGURE's after ``first`` others -> in place to model space."""
-    for start, relative in _PLAN:
-        moved = local[:, first + start :]
-        moved[:] = local.take(relative + first, axis=1) @ moved
+def figure_matrices(local: Floats) -> None:
+    """(n, 19, 4, 4) float32 local matrices of FIGURE -> in place to model space."""
+    to_model(local, _CHAINS)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from game.animation.motion_bank import FPS, MotionBank
 
-__all__ = ["Playback", "advance_playback", "begin", "start"]
+__all__ = ["Layered", "Playback", "advance_playback", "begin", "of_some", "start"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]
@@ -28,6 +28,9 @@ LEAST_WEIGHT = 0.02
 """Variants below this share are left out; it is subtracted first, so nothing jumps when one comes in."""
 PRUNE_FROM = 8
 """From this many characters on it pays to gather only the variants in use."""
+
+_THIS_AND_NEXT = np.array([[0], [1]], dtype=np.int32)
+_THIS_AND_NEXT.setflags(write=False)
 
 Layered = list[tuple[int, Ints | None, Floats]]
 """What layers say: layer, the characters in whom it runs (None: all), and for them values and their change per second
@@ -75,6 +78,25 @@ class Playback:
     def to_stroke_s(self) -> Floats:
         """(n, L) seconds until the stroke, negative after it."""
         return np.asarray(self.timing[_BEFORE_S] - self.elapsed_s)
+
+    def of(self, who: Ints) -> Playback:
+        """Some of the characters."""
+        arrays = {name: array[:, who] if name == "timing" else array[who] for name, array in vars(self).items()}
+        return Playback(**arrays)
+
+
+def of_some(values: Layered, who: Ints, n: int) -> Layered:
+    """What the layers say of some of n characters."""
+    place = np.full(n, -1, dtype=np.intp)
+    place[who] = np.arange(len(who))
+    some: Layered = []
+    for layer, running, value in values:
+        if running is None:
+            some.append((layer, None, value[who]))
+            continue
+        here = place[running]
+        some.append((layer, here[here >= 0], value[here >= 0]))
+    return some
 
 
 def start(n: int, layers: int) -> Playback:
@@ -258,7 +280,7 @@ def _mixed(
     np.subtract(weight, mix[:, :, 0, 1], out=mix[:, :, 0, 0])
     np.multiply(weight, rate[:, :, None], out=mix[:, :, 1, 1])
     np.negative(mix[:, :, 1, 1], out=mix[:, :, 1, 0])
-    both = np.stack([index, index + 1], axis=2)
+    both = index[:, :, None] + _THIS_AND_NEXT
     values: Layered = []
     for layer in layers:
         who = None

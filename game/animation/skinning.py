@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
 from game.animation.body_size import BodySize
+from game.animation.chains import CROWD, to_model
 from game.animation.crowd import crowd_matrices
 from game.animation.fitting import NEEDED, Fitting, fit_to
 from game.animation.pose import Pose
 from game.animation.rest_pose import t_pose
+from game.animation.skin_plan import SkinPlan, Sources, skin_plan, sources_of
 from game.animation.springbones import (
     SpringChain,
     SpringCollider,
@@ -33,15 +35,16 @@ __all__ = ["EyeBones", "Rig"]
 
 Floats = NDArray[np.floating[Any]]
 
-CROWD = 16
-"""From this many characters on, whole-crowd arithmetic per component beats matrices joint by joint."""
 TWIST_SHARE = 0.5
 """The twist joint in the middle of a forearm takes this share of the hand's twist."""
 MAX_TWIST_RAD = 2.6
+_ONE = np.float32(1.0)
 
 TIP_SHARE = 0.65
 """The outermost joint of a finger bends this much as far as the one before it."""
 
+_HIPS = REFERENCE.rest_translation[0].astype(np.float32)
+_HIPS.setflags(write=False)
 _SIDES = ("left", "right")
 _TIPS = {f"{s}{f}Distal": f"{s}{f}Intermediate" for s in _SIDES for f in FINGERS} | {
     f"{s}ThumbDistal": f"{s}ThumbProximal" for s in _SIDES
@@ -71,7 +74,8 @@ class Rig:
     pairs: the bone takes both rotations. twist, twist_hand: forearm twist joints and the hands (in REFERENCE) whose
     twist they share. before, after: (D, 4) constant rotations for a rest pose that is not the identity, None where it
     is. hips: joint that takes the root's translation. eyes: joints
-    that follow the gaze, or None. fitting: None for a body of the reference's own proportions.
+    that follow the gaze, or None. fitting: None for a body of the reference's own proportions. sources: where local
+    rotations come from. whole, moving: how all joints are worked out, and only what moves when springs are at rest.
     """
 
     skeleton: Skeleton
@@ -89,6 +93,9 @@ class Rig:
     fitting: Fitting | None
     eyes: _Eyes | None
     springs: SpringSet
+    sources: Sources
+    whole: SkinPlan
+    moving: SkinPlan
 
     @classmethod
     def from_arrays(
@@ -135,6 +142,10 @@ class Rig:
         before, after = _rest_turns(skeleton, driven, world)
         whole = all(bone in index for bone in NEEDED)
         fitting = fit_to({bone: place[at] for bone, at in index.items()}, size) if whole else None
+        looking = None if eyes is None else _eyes(skeleton, eyes, world)
+        twist = np.array([skeleton.index[t] for t, _ in twists], dtype=np.intp)
+        sources = sources_of(skeleton, driven, np.zeros(0, np.intp) if looking is None else looking.joints, twist)
+        turning, hips = sources.of < sources.size - len(sources.rest), index["hips"]
         return cls(
             skeleton=skeleton,
             skin_joint=joint,
@@ -143,14 +154,17 @@ class Rig:
             source=np.array(source, dtype=np.intp),
             curl=np.array([REFERENCE.index[_TIPS[tip]] for tip in tips], dtype=np.intp),
             folds=_folds(index) if whole else (),
-            twist=np.array([skeleton.index[t] for t, _ in twists], dtype=np.intp),
+            twist=twist,
             twist_hand=np.array([REFERENCE.index[h] for _, h in twists], dtype=np.intp),
             before=before,
             after=after,
-            hips=index["hips"],
+            hips=hips,
             fitting=fitting,
-            eyes=None if eyes is None else _eyes(skeleton, eyes, world),
+            eyes=looking,
             springs=build_springs(skeleton, tuple(chains), tuple(colliders)),
+            sources=sources,
+            whole=skin_plan(skeleton, sources, hips, joint, bind, np.ones(count, dtype=bool)),
+            moving=skin_plan(skeleton, sources, hips, joint, bind, turning),
         )
 
     def start(self, n: int) -> SpringState:
@@ -161,11 +175,9 @@ class Rig:
         """The pose on this body's proportions; the pose itself where they are the reference's."""
         return pose if self.fitting is None else self.fitting.fit(pose)
 
-    def local_rotations(self, pose: Pose) -> Floats:
-        """(n, J, 4) of every joint in a fitted pose; springs at rest."""
+    def local_rotations(self, pose: Pose, plan: SkinPlan | None = None) -> Floats:
+        """(n, J, 4) of every joint in a fitted pose, or (n, M, 4) of a plan's joints; springs at rest."""
         n = len(pose)
-        rotation = np.empty((n, len(self.skeleton), 4), dtype=np.float32)
-        rotation[:] = self.skeleton.rest_rotation
         normal = pose.rotation
         if self.folds:
             normal = normal.copy()
@@ -176,30 +188,37 @@ class Rig:
         taken = normal.take(self.source, axis=1)
         if self.before is not None and self.after is not None:
             taken = bl.multiply(bl.multiply(np.broadcast_to(self.before, taken.shape), taken), self.after)
-        rotation[:, self.driven] = taken
+        pool = np.empty((n, self.sources.size, 4), dtype=np.float32)
+        at = len(self.driven)
+        pool[:, :at] = taken
         if self.eyes is not None:
-            rotation[:, self.eyes.joints] = self.eyes.rotations(pose.gaze)
+            pool[:, at : at + 2] = self.eyes.rotations(pose.gaze)
+            at += 2
         if self.twist.size:
-            rotation[:, self.twist] = _half_twist(pose.rotation.take(self.twist_hand, axis=1))
-        return rotation
+            pool[:, at : at + len(self.twist)] = _half_twist(pose.rotation.take(self.twist_hand, axis=1))
+        if len(self.sources.rest):
+            pool[:, self.sources.size - len(self.sources.rest) :] = self.sources.rest
+        return pool.take(self.sources.of if plan is None else plan.source, axis=1)
 
     def root_translation(self, pose: Pose) -> Floats:
         """(n, 3) local translation of the hips joint in a fitted pose."""
-        rest = REFERENCE.rest_translation[0].astype(np.float32) if self.fitting is None else self.fitting.hips
+        rest = _HIPS if self.fitting is None else self.fitting.hips
         shift = pose.root - rest
         parent = int(self.skeleton.parents[self.hips])
         if parent >= 0:
             shift = shift @ self.skeleton.rest_model[parent, :3, :3].astype(np.float32)
-        return np.asarray(self.skeleton.rest_translation[self.hips].astype(np.float32) + shift)
+        return np.asarray(self.whole.shift[self.whole.hips] + shift)
 
     def joint_matrices(self, pose: Pose) -> Floats:
         """(n, J, 4, 4) model-space joint matrices of a pose on the reference, springs at rest."""
-        pose = self.fit(pose)
-        local = bl.affine(self.local_rotations(pose))
-        local[:, :, :3, 3] = self.skeleton.rest_translation
-        local[:, self.hips, :3, 3] = self.root_translation(pose)
-        for level in self.skeleton.levels[1:]:
-            local[:, level] = local.take(self.skeleton.parents[level], axis=1) @ local[:, level]
+        return self._model(self.fit(pose), self.whole).take(self.whole.back, axis=1)
+
+    def _model(self, fitted: Pose, plan: SkinPlan) -> Floats:
+        """(n, M, 4, 4) model-space matrices of a plan's joints."""
+        local = bl.affine(self.local_rotations(fitted, plan))
+        local[:, :, :3, 3] = plan.shift
+        local[:, plan.hips, :3, 3] = self.root_translation(fitted)
+        to_model(local, plan.chains)
         return local
 
     def skin_matrices(self, joint_matrices: Floats) -> Floats:
@@ -208,11 +227,14 @@ class Rig:
 
     def advance(self, state: SpringState, pose: Pose, dt_s: float) -> tuple[SpringState, Floats]:
         """One tick of the springs -> state and skin matrices (n, K, 4, 4)."""
-        if len(pose) >= CROWD and not self.springs.pieces:
-            return state, crowd_matrices(self, self.fit(pose))
-        model = self.joint_matrices(pose)
-        state = advance_springs(self.springs, state, model, dt_s)
-        return state, self.skin_matrices(model)
+        if self.springs.pieces:
+            model = self.joint_matrices(pose)
+            return advance_springs(self.springs, state, model, dt_s), self.skin_matrices(model)
+        fitted, plan = self.fit(pose), self.moving
+        if len(pose) >= CROWD:
+            rotation, root = self.local_rotations(fitted, plan), self.root_translation(fitted)
+            return state, crowd_matrices(plan, rotation, root)
+        return state, np.asarray(self._model(fitted, plan).take(plan.column, axis=1) @ plan.bind)
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,9 +306,10 @@ def _part(turn: Floats) -> Floats:
 
 def _half_twist(hand: Floats) -> Floats:
     """Local hand rotations (n, T, 4) -> half of their twist about the forearm (the x axis)."""
-    angle = 2.0 * np.arctan2(hand[..., 0] * np.sign(hand[..., 3] + 1e-12), np.abs(hand[..., 3]))
-    half = np.float32(0.5 * TWIST_SHARE) * np.clip(angle, -MAX_TWIST_RAD, MAX_TWIST_RAD)
+    x, w = hand[..., 0], hand[..., 3]
+    half = np.arctan2(x * np.copysign(_ONE, w), np.abs(w))
+    half = np.minimum(np.maximum(half, -0.5 * MAX_TWIST_RAD), 0.5 * MAX_TWIST_RAD) * TWIST_SHARE
     twist = np.zeros(hand.shape, dtype=np.float32)
-    twist[..., 0] = np.sin(half)
-    twist[..., 3] = np.cos(half)
+    np.sin(half, out=twist[..., 0])
+    np.cos(half, out=twist[..., 3])
     return twist

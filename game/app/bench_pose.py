@@ -1,9 +1,10 @@
 """Speed of the pose: for 1, 100 and 1000 characters, beside a NumPy floor for the same work.
 
 The floor is BENCH.md's: three samples, a masked blend of three layers, local to model space, skinning matrices of 60
-joints; alone with matrices joint by joint, in a crowd with every matrix element as an array over the characters. It
-keeps no state and mixes no variants. "same work" is that part of ours on the shipped units (with up to seven variants
-mixed); "everything" adds transitions, contacts by IK, collisions, breath, gaze and blinking.
+joints, in the fewest array calls found and the best layout: alone with matrices joint by joint, in a crowd with every
+matrix element as an array over the characters. It keeps no state, knows its frames and shares beforehand and mixes no
+variants. "same work" is that part of ours on the shipped units (with up to seven variants mixed); "everything" adds
+transitions, contacts by IK, collisions, breath, gaze and blinking.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from game.animation import GAZE_CUSTOMER, Performer, PerformerState, PerformSign
 from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation.blending import compose
+from game.animation.chains import CROWD, to_model
+from game.animation.crowd import PIECE, crowd_matrices
 from game.animation.playback import advance_playback
 from game.app.bench_rows import Row, row
 from game.core.emotion_space import emotion_vector
@@ -37,7 +40,6 @@ _TICK_S = 1.0 / 30.0
 _COUNTS = (1, 100, 1000)
 _WANTED_SAME = {1: "≤ 1.3× floor", 100: "≤ 8.4 µs", 1000: "≤ 5.2 µs"}
 _WANTED_ALL = {1: "≤ 150 µs", 100: "", 1000: ""}
-_CROWD_FROM = 16
 _SEED = 2
 _LONGEST_TICKS = 400
 
@@ -147,65 +149,29 @@ def _rig(*, springs: bool) -> Rig:
 
 
 def _floor(performer: Performer, n: int) -> Callable[[], object]:
-    """BENCH.md's work in the fewest array calls, on this performer's rows."""
+    """BENCH.md's work on this performer's rows."""
     rng = np.random.default_rng(0)
-    skeleton = _rig(springs=False).skeleton
-    order = np.arange(JOINTS) % ch.JOINTS
-    clip = performer.bank.rows[2:402, ch.ROTATION].reshape(-1, ch.JOINTS, 4)[:, order]
-    frame = rng.integers(0, 390, (n, 3))
-    part = rng.random((n, 3)).astype(np.float32)
-    mask = (rng.random((3, JOINTS)) < 0.4).astype(np.float32)
-    mask[0] = 1.0
-    bind = np.linalg.inv(skeleton.rest_model).astype(np.float32)
-    if n < _CROWD_FROM:
-        return lambda: _floor_alone(skeleton, clip, frame, part, mask, bind)
-    pieces = [slice(i, min(i + 64, n)) for i in range(0, n, 64)]
-    by_joint = np.ascontiguousarray(clip.transpose(2, 1, 0))
-    return lambda: [_floor_crowd(skeleton, by_joint, frame[p], part[p], mask, bind) for p in pieces]
+    rig = _rig(springs=False)
+    plan = rig.whole
+    joints = np.concatenate(rig.skeleton.levels) % ch.JOINTS
+    clip = performer.bank.rows[2:402, ch.ROTATION].reshape(-1, ch.JOINTS, 4)[:, joints].reshape(-1, 4 * JOINTS)
+    frame = rng.integers(0, 390, (n, 3, 1)) + np.arange(2)
+    part = rng.random((n, 3, 1)).astype(np.float32)
+    mix = np.stack([1.0 - part, part], axis=-1)
+    mask = np.repeat((rng.random((2, JOINTS)) < 0.4).astype(np.float32), 4, axis=1)
+    gate = np.stack([(1.0 - mask[0]) * (1.0 - mask[1]), mask[0] * (1.0 - mask[1]), mask[1]])
+    bind = np.linalg.inv(rig.skeleton.rest_model)[np.concatenate(rig.skeleton.levels)].astype(np.float32)
+    root = np.tile(plan.shift[plan.hips], (n, 1))
 
+    def blended(some: slice) -> Floats:
+        samples = (mix[some] @ clip.take(frame[some], axis=0))[:, :, 0]
+        return bl.normalize((samples * gate).sum(axis=1).reshape(-1, JOINTS, 4))
 
-def _floor_alone(
-    skeleton: Any, clip: Floats, frame: NDArray[np.intp], part: Floats, mask: Floats, bind: Floats
-) -> Floats:
-    a, b = clip[frame], clip[frame + 1]
-    samples = a + (b - a) * part[..., None, None]
-    q = samples[:, 0]
-    for layer in (1, 2):
-        q = q + (samples[:, layer] - q) * mask[layer][:, None]
-    local = bl.affine(bl.normalize(q))
-    local[..., :3, 3] = skeleton.rest_translation
-    for level in skeleton.levels[1:]:
-        local[:, level] = local[:, skeleton.parents[level]] @ local[:, level]
-    return np.asarray(local @ bind)
+    def alone() -> Floats:
+        local = bl.affine(blended(slice(None)))
+        local[:, :, :3, 3] = plan.shift
+        to_model(local, plan.chains)
+        return np.asarray(local @ bind)
 
-
-def _floor_crowd(
-    skeleton: Any, clip: Floats, frame: NDArray[np.intp], part: Floats, mask: Floats, bind: Floats
-) -> Floats:
-    q: Any = None
-    for layer in range(3):
-        a, b = clip.take(frame[:, layer], axis=2), clip.take(frame[:, layer] + 1, axis=2)
-        sample = a + (b - a) * part[:, layer]
-        q = sample if q is None else q + (sample - q) * mask[layer][:, None]
-    x, y, z, w = q / np.sqrt((q * q).sum(axis=0))
-    turn = np.empty((3, 3, *x.shape), dtype=np.float32)
-    turn[0, 0], turn[0, 1], turn[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
-    turn[1, 0], turn[1, 1], turn[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
-    turn[2, 0], turn[2, 1], turn[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
-    place = np.empty((3, *x.shape), dtype=np.float32)
-    shift = skeleton.rest_translation.T.astype(np.float32)[..., None]
-    place[:] = shift
-    for level in skeleton.levels[1:]:
-        above, here = turn[:, :, skeleton.parents[level]], turn[:, :, level]
-        product, moved = above[:, 0, None] * here[None, 0], above[:, 0] * shift[0, level]
-        for k in (1, 2):
-            product += above[:, k, None] * here[None, k]
-            moved += above[:, k] * shift[k, level]
-        turn[:, :, level] = product
-        place[:, level] = place[:, skeleton.parents[level]] + moved
-    columns = bind.transpose(1, 2, 0)[..., None]
-    skin = turn[:, 0, None] * columns[None, 0]
-    for k in (1, 2):
-        skin += turn[:, k, None] * columns[None, k]
-    skin[:, 3] += place
-    return np.asarray(skin)
+    pieces = [slice(i, min(i + PIECE, n)) for i in range(0, n, PIECE)]
+    return alone if n < CROWD else lambda: [crowd_matrices(plan, blended(p), root[p]) for p in pieces]
