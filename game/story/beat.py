@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from game.core.errors import BadInput
-from game.story.model import Speaker
+from game.story.model import Speaker, TimerDef
 from game.story.text import Text
 
-__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "Timer", "Warp"]
+__all__ = ["Beat", "Choice", "Chose", "Event", "Outcome", "Spoken", "Start", "Stimulus", "Timer", "Warp", "timer_at"]
 
 
 @dataclass(frozen=True)
@@ -90,6 +90,13 @@ class Timer:
 
     seconds: float
     choice: str
+
+
+def timer_at(timer: TimerDef | None, choices: Sequence[Choice]) -> Timer | None:
+    """The timer of the place where the talk waits, if its default can be taken."""
+    if timer is None or not any(choice.id == timer.default and choice.available for choice in choices):
+        return None
+    return Timer(timer.seconds, timer.default)
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from game.story.acts import ActTable
 from game.story.chance import pick_weighted, shuffled, uniform
 from game.story.expressions import Scope
-from game.story.model import ChoiceDef
+from game.story.model import ChoiceDef, LineDef
 from game.story.prepared import Group, ReadyChoice
 
-__all__ = ["draw_choices"]
+__all__ = ["draw_choices", "fresh_of"]
 
 
 def draw_choices(
@@ -50,6 +50,17 @@ def draw_choices(
             counter += 1
             drawn.append(rest.pop(int(uniform(seed, counter) * len(rest))))
     return [drawn[i] for i in shuffled(len(drawn), seed, counter + 1)]
+
+
+def fresh_of(lines: list[LineDef], order: str, earlier: Collection[str], heard: Mapping[str, int]) -> list[LineDef]:
+    """Of several lines that fit, those among which chance decides, by the order of their group. earlier: what was said
+    on earlier visits, which comes last; heard: how often lines that may come again were said."""
+    if earlier:
+        lines = [line for line in lines if line.id not in earlier] or lines
+    if order == "shuffled":
+        least = min(heard.get(line.id, 0) for line in lines)
+        lines = [line for line in lines if heard.get(line.id, 0) == least]
+    return lines[:1] if order == "listed" else lines
 
 
 def _usable(choices: Sequence[ReadyChoice], scope: Scope, chosen: Collection[str]) -> list[ChoiceDef]:

@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from game.core.errors import BadInput
-from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Timer, Warp
+from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Warp, timer_at
 from game.story.chance import pick_weighted, uniform
-from game.story.draw import draw_choices
+from game.story.draw import draw_choices, fresh_of
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, Script
-from game.story.prepared import FIXED_NAMES, ReadyLine, prepared
+from game.story.prepared import FIXED_NAMES, Offered, ReadyLine, Table, prepared
 from game.story.state import StoryState
 from game.story.text import Text
 from game.story.vocabulary import OUTCOMES, Value, environment
@@ -23,6 +23,8 @@ __all__ = ["advance", "resume"]
 _MAX_STEPS = 500
 _MAX_RETURNS = 16
 _DRAW_STREAM = 0x9E3779B9
+_KEPT_NAMES = FIXED_NAMES | {"offer"}
+_NOTHING: Table = ((), (), ())
 
 
 def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -67,7 +69,7 @@ def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple
     if state.ended is None and not any(run.usable(choice) for choice, _ in usable):
         run.wait_at(script.nodes[state.node])
     else:
-        run.offered = usable
+        run.offered = tuple([(choice, line, None) for choice, line in usable])
     fresh, beat = run.result()
     return replace(fresh, last_lines=state.last_lines), beat
 
@@ -90,10 +92,11 @@ class _Run:
         self.ended = state.ended
         self.returns = list(state.returns)
         self.visits = dict(state.visits)
-        self.said = set(state.said)
-        self.chosen = set(state.chosen)
+        # The state's own until something is added.
+        self.said: set[str] | frozenset[str] = state.said
+        self.chosen: set[str] | frozenset[str] = state.chosen
         self.heard = dict(state.heard)
-        self.seen = {*state.earlier, *state.said, *state.chosen, *state.visits}
+        self.seen: set[str] | None = None
         self.names: dict[str, Value] = environment(env)
         self.names.update(state.variables)
         self.names["item"] = state.item
@@ -101,12 +104,23 @@ class _Run:
         told = str(self.names["quality"]) if self.names["tells"] else "none"
         self.told = "veiled" if told == "none" else told
         self.ready = prepared(script, state.item)
-        self.scope = Scope(self.names, self.visits, self.seen)
+        self.says = self.ready.told(self.told)
+        self.scope = Scope(self.names, self.visits, self.gather)
         self.lines: list[Spoken] = []
         self.stimuli: list[Stimulus] = []
-        self.offered: list[tuple[ChoiceDef, LineDef]] = []
+        self.offered: tuple[Offered, ...] = ()
+        self.table: Table | None = None
 
-    # --- chance ----------------------------------------------------------------------------------------------
+    def gather(self) -> set[str]:
+        """Everything said, chosen or visited so far, from now on kept up to date by ``note``."""
+        self.seen = {*self.state.earlier, *self.said, *self.chosen, *self.visits}
+        return self.seen
+
+    def note(self, seen: str) -> None:
+        """Something is said, chosen or visited."""
+        if self.seen is not None:
+            self.seen.add(seen)
+
     def chance(self) -> float:
         self.counter += 1
         return uniform(self.state.seed, self.counter)
@@ -114,16 +128,20 @@ class _Run:
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
         """Take a choice: its words, effects and feelings; the node it leads to."""
-        offered = dict(self.state.offered)
-        choice = self.script.choices.get(choice_id) if choice_id in offered else None
-        if choice is None or not self.usable(choice):
-            raise BadInput("choice", expected=" | ".join(offered) or "none", seen=choice_id)
+        choice = text = None
+        for name, wording in self.state.offered:
+            if name == choice_id:
+                choice, text = self.script.choices.get(name), wording
+        if choice is None or text is None or not self.usable(choice):
+            known = [name for name, _ in self.state.offered]
+            raise BadInput("choice", expected=" | ".join(known) or "none", seen=choice_id)
         if not choice.silent:
-            self.say_line(self.line_of(choice_id, offered[choice_id]))
+            self.say_line(self.line_of(choice_id, text))
         if choice.act != "offer" and self.names["offer_result"] != "none":
             self.say_offer()
-        self.chosen.add(choice_id)
-        self.seen.add(choice_id)
+        if choice_id not in self.chosen:
+            self.chosen = {*self.chosen, choice_id}
+            self.note(choice_id)
         # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
         self.apply(choice.effects, {}, choice_id)
         return self.branch(choice.to)
@@ -138,9 +156,12 @@ class _Run:
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
+        nodes = self.script.nodes
         for _ in range(_MAX_STEPS):
-            target = self.resolved(target)
-            node = self.script.nodes[target]
+            node = nodes.get(target)
+            if node is None:
+                target = self.resolved(target)
+                node = nodes[target]
             outcome_node = self.script.outcomes.get(pending) if pending else None
             ending = pending is not None and OUTCOMES[pending]
             if pending is not None and (node.waits or (node.end is not None and ending)):
@@ -164,7 +185,11 @@ class _Run:
                     return
                 target = HOME
                 continue
-            target = self.way_on(node)
+            if node.call is None:
+                target = self.branch(node.to)
+            else:
+                self.push(f"after:{node.id}")
+                target = node.call
         if closing is not None:
             self.ended = closing
         else:
@@ -182,12 +207,6 @@ class _Run:
                 target = self.branch(self.script.nodes[target.removeprefix("after:")].to)
         return self.script.home if target == HOME else target
 
-    def way_on(self, node: NodeDef) -> str:
-        if node.call is None:
-            return self.branch(node.to)
-        self.push(f"after:{node.id}")
-        return node.call
-
     def push(self, target: str) -> None:
         self.returns.append(target)
         del self.returns[:-_MAX_RETURNS]
@@ -199,14 +218,24 @@ class _Run:
         return HOME
 
     def enter(self, node: NodeDef) -> None:
-        self.node = node.id
-        self.visits[node.id] = self.visits.get(node.id, 0) + 1
-        self.seen.add(node.id)
+        name = self.node = node.id
+        self.visits[name] = self.visits.get(name, 0) + 1
+        self.note(name)
         if node.effects or node.feel:
-            self.apply(node.effects, node.feel, node.id)
-        for test, order, lines in self.ready.says(node, self.told):
-            if test is None or test(self.scope):
+            self.apply(node.effects, node.feel, name)
+        says = self.says.get(name)
+        if says is None:
+            says = self.ready.says(node, self.told)
+        scope = self.scope
+        for test, order, lines in says:
+            if test is not None and not test(scope):
+                continue
+            if len(lines) > 1:
                 self.say(lines, order)
+                continue
+            line, own = lines[0]
+            if (line.again or line.id not in self.said) and (own is None or own(scope)):
+                self.say_line(line)
 
     def apply(self, effects: tuple[EffectDef, ...], feel: Mapping[str, float], source: str) -> None:
         for effect in effects:
@@ -218,33 +247,31 @@ class _Run:
     def say(self, lines: Sequence[ReadyLine], order: str) -> None:
         """One line of those that can be said now."""
         said, scope = self.said, self.scope
-        fresh = [line for line, test in lines if (line.id not in said or line.again) and (test is None or test(scope))]
+        fresh = [line for line, test in lines if (line.again or line.id not in said) and (test is None or test(scope))]
         if len(fresh) > 1:
-            fresh = [self.pick(fresh, order)]
+            fresh = fresh_of(fresh, order, self.state.earlier, self.heard)
         if fresh:
-            self.say_line(fresh[0])
+            self.say_line(fresh[0] if len(fresh) == 1 else self.drawn(fresh))
 
-    def pick(self, fresh: list[LineDef], order: str) -> LineDef:
-        """By the order of the group; on a later visit, what was said on an earlier one comes last."""
-        if earlier := self.state.earlier:
-            fresh = [line for line in fresh if line.id not in earlier] or fresh
-        if order == "shuffled":
-            least = min(self.heard.get(line.id, 0) for line in fresh)
-            fresh = [line for line in fresh if self.heard.get(line.id, 0) == least]
-        if len(fresh) == 1 or order == "listed":
-            return fresh[0]
-        return fresh[pick_weighted([line.weight for line in fresh], self.chance())]
+    def drawn(self, lines: Sequence[LineDef]) -> LineDef:
+        """One of several by their weights."""
+        return lines[pick_weighted([line.weight for line in lines], self.chance())]
 
     def say_line(self, line: LineDef) -> None:
-        if line.id in self.said and not line.again:
+        name = line.id
+        if name not in self.said:
+            if isinstance(self.said, frozenset):
+                self.said = set(self.said)
+            self.said.add(name)
+            self.note(name)
+        elif not line.again:
             return
-        self.said.add(line.id)
-        self.seen.add(line.id)
         if line.again:
-            self.heard[line.id] = self.heard.get(line.id, 0) + 1
-        self.lines.append(self.spoken(line))
+            self.heard[name] = self.heard.get(name, 0) + 1
+        known = self.ready.spoken.get(name)
+        self.lines.append(self.spoken(line) if known is None else known)
         if line.feel:
-            self.stimuli.append(Stimulus(line.feel, line.id))
+            self.stimuli.append(Stimulus(line.feel, name))
 
     def holds(self, line: LineDef) -> bool:
         """Whether a line fits how the player's line landed, and its condition holds."""
@@ -267,7 +294,7 @@ class _Run:
     def shown(self, choice: ChoiceDef) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
         once = choice.once
-        if once != "never" and choice.id in (self.chosen if once == "talk" else self.seen):
+        if once != "never" and choice.id in (self.chosen if once == "talk" else self.scope.seen):
             return False
         return choice.condition is None or bool(choice.condition.evaluate(self.scope))
 
@@ -279,13 +306,31 @@ class _Run:
         """Lay the choices of a node on the table; False where none can be taken."""
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
+        self.table = self.ready.tables.get(node.id)
+        if self.table is not None:
+            return True
         drawn: list[ChoiceDef] = []
         if node.pools:
             groups, seed = self.ready.groups(node), self.state.seed ^ _DRAW_STREAM
             drawn = draw_choices(groups, self.scope, self.chosen, node.draw, self.script.acts, seed, self.turn * 64)
-        others = (*node.choices, *self.script.standing) if node.standing else node.choices
-        self.offered = [(choice, self.variant(choice)) for choice in (*drawn, *filter(self.shown, others))]
-        return bool(drawn) or any(self.usable(choice) for choice, _ in self.offered)
+        offered: list[Offered] = [(choice, self.variant(choice), None) for choice in drawn]
+        here = self.laid(node.id, node.choices)
+        standing = self.laid("", self.script.standing) if node.standing else ()
+        self.offered = (*offered, *here, *standing)
+        fixed = isinstance(here, tuple) and isinstance(standing, tuple)
+        if fixed and self.offered and not node.pools:
+            seen = tuple([made for _, _, made in self.offered if made is not None])
+            pairs = tuple([(choice.id, line.id) for choice, line, _ in self.offered])
+            self.ready.tables[node.id] = self.table = (self.offered, pairs, seen)
+            return True
+        return bool(offered) or any(made is not None or self.usable(choice) for choice, _, made in self.offered)
+
+    def laid(self, place: str, choices: Sequence[ChoiceDef]) -> Sequence[Offered]:
+        """Those of a place's choices that may be seen."""
+        fixed = self.ready.fixed(place, choices, self.made)
+        if fixed is not None:
+            return fixed
+        return [(choice, self.variant(choice), None) for choice in filter(self.shown, choices)]
 
     def variant(self, choice: ChoiceDef) -> LineDef:
         """A wording not yet used in this talk, by chance; the first where all were."""
@@ -298,34 +343,46 @@ class _Run:
             fresh = [line for line in plain if line.id not in said]
         if len(fresh) < 2:
             return fresh[0] if fresh else choice.texts[0]
-        return fresh[pick_weighted([line.weight for line in fresh], self.chance())]
+        return self.drawn(fresh)
 
     def line_of(self, choice_id: str, text_id: str) -> LineDef:
         texts = self.script.choices[choice_id].texts
+        if len(texts) == 1:
+            return texts[0]
         return next((line for line in texts if line.id == text_id), texts[0])
 
-    def _choice(self, offered: tuple[ChoiceDef, LineDef]) -> Choice:
-        choice, line = offered
+    def made(self, choice: ChoiceDef, line: LineDef) -> Choice:
+        """A choice that can be taken, in one of its wordings, as the player sees it."""
         key = (choice.id, line.id)
-        usable = self.usable(choice)
-        if usable and key in self.ready.options:
-            return self.ready.options[key]
+        known = self.ready.options.get(key)
+        if known is None:
+            text = self.filled(line.text, keep="offer")
+            known = Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.feel)
+            if line.text.names <= _KEPT_NAMES:
+                self.ready.options[key] = known
+        return known
+
+    def _choice(self, choice: ChoiceDef, line: LineDef) -> Choice:
+        if self.usable(choice):
+            return self.made(choice, line)
         text = self.filled(line.text, keep="offer")
-        reason = None if usable or choice.reason is None else self.filled(choice.reason)
-        made = Choice(choice.id, choice.act, text.en, text.ja, usable, reason, choice.feel)
-        if usable and line.text.names <= {*FIXED_NAMES, "offer"}:
-            self.ready.options[key] = made
-        return made
+        reason = None if choice.reason is None else self.filled(choice.reason)
+        return Choice(choice.id, choice.act, text.en, text.ja, False, reason, choice.feel)
 
     def result(self) -> tuple[StoryState, Beat]:
-        offered = [] if self.ended is not None else self.offered
-        before = self.state
-        state = StoryState(
-            stall=before.stall,
-            item=before.item,
-            seed=before.seed,
-            visit=before.visit,
-            earlier=before.earlier,
+        if self.ended is not None:
+            _, pairs, choices = _NOTHING
+        elif self.table is not None:
+            _, pairs, choices = self.table
+        else:
+            pairs = tuple([(choice.id, line.id) for choice, line, _ in self.offered])
+            choices = tuple(
+                [self._choice(choice, line) if made is None else made for choice, line, made in self.offered]
+            )
+        timer = timer_at(self.script.nodes[self.node].timer, choices) if self.ended is None and self.node else None
+        names = self.names
+        lines = tuple(self.lines)
+        state = self.state.moved(
             started=True,
             counter=self.counter,
             turn=self.turn,
@@ -336,16 +393,8 @@ class _Run:
             said=frozenset(self.said),
             chosen=frozenset(self.chosen),
             heard=self.heard,
-            variables={name: self.names[name] for name in self.script.variables},
-            offered=tuple([(choice.id, line.id) for choice, line in offered]),
-            last_lines=tuple([line.id for line in self.lines]),
+            variables={name: names[name] for name in self.script.variables},
+            offered=pairs,
+            last_lines=tuple([line.id for line in lines]),
         )
-        choices = tuple([self._choice(pair) for pair in offered])
-        return state, Beat(self.node, tuple(self.lines), choices, tuple(self.stimuli), self.ended, self.timer(choices))
-
-    def timer(self, choices: Sequence[Choice]) -> Timer | None:
-        """The timer of the place where the talk waits, if its default can be taken."""
-        timer = self.script.nodes[self.node].timer if self.ended is None and self.node else None
-        if timer is None or not any(choice.id == timer.default and choice.available for choice in choices):
-            return None
-        return Timer(timer.seconds, timer.default)
+        return state, Beat(self.node, lines, choices, tuple(self.stimuli), self.ended, timer)

@@ -51,13 +51,28 @@ class ExpressionError(BadInput):
         self.hint = hint
 
 
-@dataclass(frozen=True)
 class Scope:
-    """What an expression can see: values by name, visits by node, and everything said, chosen or visited."""
+    """What an expression can see: values by name, visits by node, and everything said, chosen or visited.
 
-    names: Mapping[str, Value]
-    visits: Mapping[str, int]
-    seen: Collection[str]
+    seen: a collection, or a function that gathers it when something asks for the first time.
+    """
+
+    __slots__ = ("_seen", "names", "visits")
+
+    def __init__(
+        self,
+        names: Mapping[str, Value],
+        visits: Mapping[str, int],
+        seen: Collection[str] | Callable[[], set[str]],
+    ) -> None:
+        self.names, self.visits, self._seen = names, visits, seen
+
+    @property
+    def seen(self) -> Collection[str]:
+        """Ids of lines and choices, and nodes."""
+        if callable(self._seen):
+            self._seen = self._seen()
+        return self._seen
 
 
 @dataclass(frozen=True)

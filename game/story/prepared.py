@@ -17,7 +17,10 @@ from game.story.model import ChoiceDef, LineDef, NodeDef, Script
 from game.story.text import Text
 from game.story.vocabulary import ACTS
 
-__all__ = ["FIXED_NAMES", "Group", "Prepared", "ReadyChoice", "ReadyLine", "ReadySay", "Test", "prepared"]
+__all__ = [
+    "FIXED_NAMES", "Fixed", "Group", "Offered", "Prepared", "ReadyChoice", "ReadyLine", "ReadySay", "Table", "Test",
+    "prepared",
+]  # fmt: skip
 
 Test = Callable[[Scope], Any]
 ReadyLine = tuple[LineDef, Test | None]
@@ -28,6 +31,13 @@ ReadyChoice = tuple[ChoiceDef, bool, bool, Test | None]
 """A choice, whether it is used up in a talk, and at the stall, and what must hold for it."""
 Group = tuple[str, tuple[ReadyChoice, ...]]
 """An act and the choices that perform it."""
+Offered = tuple[ChoiceDef, LineDef, Choice | None]
+"""A choice on the table, its wording, and itself as the player sees it where that is the same in every talk."""
+
+Fixed = tuple[Offered, ...] | None
+"""Choices that are on the table in the same way in every talk; None where they are not."""
+Table = tuple[tuple[Offered, ...], tuple[tuple[str, str], ...], tuple[Choice, ...]]
+"""Everything on the table of a node: as offered, by the ids of choice and wording, and as the player sees it."""
 
 FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
 """Names in braces that mean the same throughout all talks about an item."""
@@ -47,6 +57,7 @@ def prepared(script: Script, item: str) -> Prepared:
 class Prepared:
     """Tables of one script for talks about one item; they fill as nodes are passed and never change what is told.
 
+    tables: by node, where nothing on the table can change; whoever lays it keeps it here.
     spoken, options: lines by id, and available choices by the ids of choice and wording, whose words are the same in
     every talk about the item (the amount of an offer is left open); whoever fills words in keeps them here.
     """
@@ -54,19 +65,25 @@ class Prepared:
     def __init__(self, script: Script, item: str, *, settle: bool = True) -> None:
         """settle: leave out what the item rules out; without, every condition is asked in the talk."""
         self.script, self.item, self.settle = script, item, settle
-        self._says: dict[tuple[str, str], tuple[ReadySay, ...]] = {}
+        self._says: dict[str, dict[str, tuple[ReadySay, ...]]] = {}
         self._groups: dict[str, tuple[Group, ...]] = {}
         self.spoken: dict[str, Spoken] = {}
         self.options: dict[tuple[str, str], Choice] = {}
         self._money: dict[int, Text] = {}
         self._wordings: dict[str, tuple[LineDef, ...] | None] = {}
+        self._fixed: dict[str, Fixed] = {}
+        self.tables: dict[str, Table] = {}
+
+    def told(self, told: str) -> dict[str, tuple[ReadySay, ...]]:
+        """By node, what ``says`` has worked out where the player's line landed so."""
+        return self._says.setdefault(told, {})
 
     def says(self, node: NodeDef, told: str) -> tuple[ReadySay, ...]:
         """What a node can say where the player's line landed so (``veiled`` where the words hide it)."""
-        key = (node.id, told)
-        found = self._says.get(key)
+        by_node = self.told(told)
+        found = by_node.get(node.id)
         if found is None:
-            found = self._says[key] = tuple(self._ready_says(node, told))
+            found = by_node[node.id] = tuple(self._ready_says(node, told))
         return found
 
     def _ready_says(self, node: NodeDef, told: str) -> Iterable[ReadySay]:
@@ -92,6 +109,22 @@ class Prepared:
                     by_act.setdefault(choice.act, []).append(ready)
             found = self._groups[node.id] = tuple((act, tuple(ready)) for act, ready in by_act.items() if ready)
         return found
+
+    def fixed(self, key: str, choices: Iterable[ChoiceDef], make: Callable[[ChoiceDef, LineDef], Choice]) -> Fixed:
+        """What choices of one place (``key``) come to where nothing can change them in any talk about the item: never
+        used up, no condition left to ask, one wording with fixed names. None where something can."""
+        try:
+            return self._fixed[key]
+        except KeyError:
+            found: list[Offered] = []
+            for choice in choices:
+                settled = self._open(choice.condition) is None and self._open(choice.needs) is None
+                plain = len(choice.texts) == 1 and choice.texts[0].text.names <= {*FIXED_NAMES, "offer"}
+                if not (settled and plain and choice.once == "never"):
+                    self._fixed[key] = None
+                    return None
+                found.append((choice, choice.texts[0], make(choice, choice.texts[0])))
+            return self._fixed.setdefault(key, tuple(found))
 
     def wordings(self, choice: ChoiceDef) -> tuple[LineDef, ...] | None:
         """The wordings of a choice where all of them fit at any time; None where some ask for more."""

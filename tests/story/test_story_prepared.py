@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 
 import numpy as np
+import pytest
 
-from game.core.paths import DIALOGUE
+from game.core.paths import ASSETS, DIALOGUE
 from game.core.streams import Streams
 from game.story import Chose, Start, advance, begin, load_script
 from game.story.expressions import Scope
 from game.story.prepared import prepared
+
+BENCH = ASSETS / "bench" / "ten_choices.yaml"
 
 
 def test_tables_leave_out_only_what_can_never_hold_for_the_item() -> None:
@@ -66,3 +70,26 @@ def test_streams_give_what_a_generator_of_their_own_would() -> None:
             alone.standard_normal(),
             alone.random(),
         ]
+
+
+@pytest.mark.parametrize("path", [BENCH, DIALOGUE / "toys.yaml"], ids=["every table fixed", "a stall"])
+def test_what_is_worked_out_once_changes_no_talk(path: Path) -> None:
+    """The same talk with tables that filled in earlier talks, and with none left from one step to the next."""
+    warm, cold = load_script(path), load_script(path)
+    for seed in range(20):
+        item = list(warm.items)[seed % len(warm.items)]
+        states = [begin(script, item, seed) for script in (warm, cold)]
+        draw, event = random.Random(seed), Start()
+        for turn in range(12):
+            cold.tables.clear()
+            env = {"list_price": 1200.0, "ask": 1200.0 - turn, "trust": draw.random(), "round": turn + 1.0}
+            env |= {"tells": draw.random() < 0.5, "quality": draw.choice(["right", "wrong", "neutral"])}
+            results = [advance(script, state, event, env) for script, state in zip((warm, cold), states, strict=True)]
+            states = [state for state, _ in results]
+            assert states[0] == states[1]
+            assert results[0][1] == results[1][1]
+            beat = results[0][1]
+            if beat.ended is not None:
+                break
+            event = Chose(draw.choice([choice.id for choice in beat.choices if choice.act != "leave"]))
+    assert warm.tables[next(iter(warm.items))].tables.keys() >= ({"hub"} if path == BENCH else set())
