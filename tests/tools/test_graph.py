@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import itertools
 import json
 import random
@@ -121,11 +122,17 @@ def tiny_path() -> Path:
 
 def test_heat_counts_what_the_log_passed(flea, graph, log):
     heat = read_heat(log, flea)
+    packed = log.with_suffix(".jsonl.gz")
+    packed.write_bytes(gzip.compress(log.read_bytes()))
+    assert read_heat(packed, flea) == heat
     rows = [json.loads(row) for row in log.read_text(encoding="utf-8").splitlines()]
     assert heat.talks == 30
     assert heat.nodes[flea.start] == 30
     assert heat.choices.total() == len(rows)
-    assert heat.nodes["deal"] == sum(row["outcome"] == "deal" for row in rows)
+    assert heat.nodes["deal"] == sum("deal" in row["nodes"] for row in rows) > 0
+    silent = [node.id for node in flea.nodes.values() if not node.says and node.id not in {flea.start, "talk"}]
+    assert any(heat.nodes[name] for name in silent), "nodes that say nothing are counted, too"
+    assert all(heat.nodes[name] >= sum(name in row["nodes"] for row in rows) for name in flea.nodes)
     cards = _cards(svg_of(graph, heat))
     assert str(heat.nodes["talk"]) in _texts(cards["talk"]).replace(",", "")
     unvisited = next(name for name in flea.nodes if not heat.nodes[name])
@@ -133,12 +140,28 @@ def test_heat_counts_what_the_log_passed(flea, graph, log):
     assert f"{heat.nodes['talk']} visits" in dot_of(graph, heat)
 
 
-@pytest.mark.parametrize("row", ["no json", '{"lines": 3}', "[1]", '{"lines": [], "node": 2, "choice": "x"}', ""])
+@pytest.mark.parametrize(
+    "row", ["no json", '{"nodes": 3}', "[1]", '{"stall": "flea", "nodes": [], "node": 2, "choice": "x"}', ""]
+)
 def test_other_logs_are_refused_with_their_row(tmp_path, flea, log, row):
     path = tmp_path / "bad.jsonl"
     path.write_text(log.read_text(encoding="utf-8").split("\n")[0] + "\n" + row + "\n", encoding="utf-8")
     with pytest.raises(BadInput, match=r"bad\.jsonl:2"):
         read_heat(path, flea)
+
+
+def test_logs_of_other_stalls_and_torn_ones_are_told_apart(tmp_path, log):
+    toys = load_script(DIALOGUE / "toys.yaml")
+    with pytest.raises(BadInput, match=r"talks at toys but saw 'flea'"):
+        read_heat(log, toys)
+    both = tmp_path / "both.jsonl"
+    text = log.read_text(encoding="utf-8")
+    both.write_text(text + text.replace('"stall":"flea"', '"stall":"toys"'), encoding="utf-8")
+    assert read_heat(both, toys).talks == 30, "a log of several stalls warms each by its own"
+    torn = tmp_path / "torn.jsonl.gz"
+    torn.write_bytes(gzip.compress(text.encode())[:-200])
+    with pytest.raises(BadInput, match=r"torn\.jsonl\.gz"):
+        read_heat(torn, toys)
 
 
 def test_the_page_is_whole_and_its_words_cannot_break_out(graph, tiny_path, tmp_path):

@@ -1,11 +1,15 @@
-"""How often autoplay passed each node and took each choice: read from its logs (JSON Lines)."""
+"""How often autoplay passed each node and took each choice: read from its logs (JSON Lines, plain or gzip)."""
 
 from __future__ import annotations
 
+import gzip
 import json
+import zlib
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from game.core.errors import BadInput, Where
 from game.story import Script
@@ -13,6 +17,7 @@ from game.story import Script
 __all__ = ["Heat", "read_heat"]
 
 _MAX_ROW = 100_000
+_GZIP = b"\x1f\x8b"
 
 
 @dataclass(frozen=True)
@@ -25,38 +30,65 @@ class Heat:
 
 
 def read_heat(path: Path, script: Script) -> Heat:
-    """Count a log of ``run_game.py autoplay --out``. Raises BadInput with file:line for a row that is none of its.
+    """Count the talks at this stall in a log of ``run_game.py autoplay --out``; those at other stalls are passed over.
 
-    A node counts for each row in which one of its lines was spoken, to which the choice or its outcome leads, or in
-    which the talk waited there.
+    Each row tells which nodes its decision led through. What led to a talk's first decision is not among them: the
+    greeting counts as far as there is but one way, and where the player was asked. Raises BadInput with file:line for
+    a row that is no row of a log, and where no talk at this stall is in it.
     """
-    node_of = {line.id: node.id for node in script.nodes.values() for say in node.says for line in say.lines}
     nodes: Counter[str] = Counter()
     choices: Counter[str] = Counter()
-    talks: set[tuple[str, str]] = set()
-    sure = {c.id: c.to[0].target for c in script.all_choices() if c.to[0].condition is None}
+    talks = 0
+    last: tuple[Any, ...] = ()
+    elsewhere = ""
+    for number, row in _rows(path):
+        try:
+            move = json.loads(row)
+            stall, passed, node, choice = move["stall"], move["nodes"], move["node"], move["choice"]
+            talk = (stall, move["policy"], move["episode"], move.get("visit", 0))
+            if not isinstance(passed, list) or not all(
+                isinstance(name, str) for name in (*passed, stall, node, choice)
+            ):
+                raise TypeError
+        except (ValueError, KeyError, TypeError, RecursionError):
+            raise BadInput(
+                where=Where(path, number), expected="a row of `run_game.py autoplay --out`", seen=row.strip()[:60]
+            ) from None
+        if stall != script.stall:
+            elsewhere = stall
+            continue
+        if talk != last:
+            talks, last = talks + 1, talk
+            came_back = script.outcomes.get("came_back") if talk[3] > 1 else None
+            nodes.update({*_greeting(script, came_back or script.start), node} & script.nodes.keys())
+        nodes.update(name for name in passed if name in script.nodes)
+        choices[choice] += 1
+    if not talks:
+        raise BadInput(where=Where(path), expected=f"talks at {script.stall}", seen=elsewhere or "none")
+    return Heat(talks, nodes, choices)
+
+
+def _greeting(script: Script, first: str) -> Iterator[str]:
+    """The nodes from the talk's first on, as long as there is only one way."""
+    seen: set[str] = set()
+    while first in script.nodes and first not in seen:
+        seen.add(first)
+        yield first
+        node = script.nodes[first]
+        if node.call is not None:
+            yield node.call
+        first = node.to[0].target if node.to and node.to[0].condition is None else ""
+
+
+def _rows(path: Path) -> Iterator[tuple[int, str]]:
+    """Lines with their numbers, none longer than a row can be."""
     try:
-        stream = path.open(encoding="utf-8", errors="replace")
+        with path.open("rb") as raw:
+            packed = raw.read(2) == _GZIP
+        open_ = gzip.open if packed else open
+        with open_(path, "rt", encoding="utf-8", errors="replace") as stream:
+            yield from enumerate(iter(lambda: stream.readline(_MAX_ROW), ""), 1)
+    except (EOFError, zlib.error) as error:
+        raise BadInput(f"cannot unpack this log: {error}", where=Where(path)) from None
     except OSError as error:
         raise BadInput(f"cannot read this log: {error.strerror or error}", where=Where(path)) from None
-    with stream:
-        for number, row in enumerate(iter(lambda: stream.readline(_MAX_ROW), ""), 1):
-            try:
-                move = json.loads(row)
-                lines, node, choice = move["lines"], move["node"], move["choice"]
-                if not isinstance(lines, list) or not isinstance(node, str) or not isinstance(choice, str):
-                    raise TypeError
-            except (ValueError, KeyError, TypeError, RecursionError):
-                raise BadInput(
-                    where=Where(path, number), expected="a row of `run_game.py autoplay --out`", seen=row.strip()[:60]
-                ) from None
-            talk = (str(move.get("policy", "")), str(move.get("episode")))
-            passed = {node_of[line] for line in lines if isinstance(line, str) and line in node_of} | {node}
-            # Nodes may say nothing: those a choice or an outcome surely leads to were passed all the same.
-            passed |= {sure.get(choice, ""), script.outcomes.get(str(move.get("outcome")), "")}
-            if talk not in talks:
-                passed.add(script.start)
-            talks.add(talk)
-            nodes.update(passed & script.nodes.keys())
-            choices[choice] += 1
-    return Heat(len(talks), nodes, choices)
