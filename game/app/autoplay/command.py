@@ -27,10 +27,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from game.app.autoplay.comparisons import Comparison, compared
+from game.app.autoplay.coverage import covered
 from game.app.autoplay.executors import Crew, workers_of
 from game.app.autoplay.progress import Progress
 from game.app.autoplay.runs import Plan, Run, play
-from game.app.content import stall_path
+from game.app.content import load_talk_assets, stall_path
 from game.app.policies import COMPARED, mixture_of, seat_exists
 from game.core.errors import BadInput
 from game.story import shipped_stalls
@@ -171,9 +173,19 @@ def summaries(done: Run) -> list[dict[str, Any]]:
     return rows
 
 
+def comparisons_at(done: Run, stall: str) -> list[Comparison]:
+    """What the policies of a run are worth against each other at a stall."""
+    tallies = {name: done.total(stall, name) for name in done.plan.populations}
+    return compared(tallies, load_talk_assets(stall_path(stall)).person.mask) if len(tallies) > 1 else []
+
+
 def _tell(done: Run, as_json: bool) -> None:
     rows = summaries(done)
+    against = {stall: comparisons_at(done, stall) for stall in done.plan.stalls}
     if as_json:
+        for row in rows:
+            if row["policy"] == "oracle" and against[row["stall"]]:
+                row["compared"] = [figure.to_dict() for figure in against[row["stall"]]]
         print(json.dumps(rows[0] if len(rows) == 1 else rows, ensure_ascii=False))
         return
     if len(rows) == 1:
@@ -190,6 +202,11 @@ def _tell(done: Run, as_json: bool) -> None:
                     f"    {row['deal_rate']:.1%} ± {row['deal_rate_ci95']:.1%}    {row['mean_rounds']:.2f}"
                     f"   {row['lines']['right']:.2f}   {row['lines']['wrong']:.2f}"
                 )
+        for figure in against[stall]:
+            print(f"  {figure.text}")
+        if done.plan.cover:
+            reached = [f"{kind} {part.reached}/{part.total}" for kind, part in covered(done, stall).items()]
+            print(f"  reached: {', '.join(reached)}")
 
 
 def _tell_one(row: dict[str, Any]) -> None:

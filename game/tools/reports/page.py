@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 
+from game.app.autoplay.comparisons import compared
 from game.app.autoplay.coverage import Reached, covered
 from game.app.autoplay.requirements import Finding
 from game.app.autoplay.runs import Run
@@ -126,7 +127,14 @@ def _balance(run: Run, stall: str, tallies: Mapping[str, Tally]) -> str:
         rows.append(_balance_row(name, tally))
         own = run.policies(stall, name)
         rows += [_balance_row(f"· {who}", part) for who, part in own.items() if len(own) > 1]
-    return f'<div class="card"><table>{head}{"".join(rows)}</table></div>'
+    mask = load_talk_assets(stall_path(stall)).person.mask
+    against = "".join(
+        f"<tr><td>{escape(c.name)}</td><td>{escape(c.figure)}</td><td>{escape(c.wanted)}</td>"
+        f'<td><span class="mark {"good" if c.good else "bad"}">{"✓ as wanted" if c.good else "✗ not"}</span></td></tr>'
+        for c in compared(tallies, mask)
+    )
+    table = f'<div class="card"><table>{head}{"".join(rows)}</table></div>'
+    return table + (f'<div class="card"><table>{against}</table></div>' if against else "")
 
 
 def _balance_row(name: str, tally: Tally) -> str:
