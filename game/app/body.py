@@ -21,7 +21,7 @@ from game.app.step import StepAssets, feelings_after, leaked_emotion, new_world,
 from game.app.talk import TalkAssets, TalkState
 from game.app.world import TICK_S, Intent, World, enter_talk
 from game.core.emotion_space import with_neutral
-from game.embos import Decisions, Planner, PlannerSignal, PlannerState
+from game.embos import Decisions, Planner, PlannerSignal, PlannerState, greet, habit_of
 
 __all__ = ["BATCH", "BodyObserver", "Watched"]
 
@@ -127,6 +127,9 @@ class _Bodies:
         self.talks = list(self.actors)
         keys = [actor.world.body.planner.key for actor in self.actors]
         self.state: PlannerState = self.planner.start(n, seed).renewed(key=np.concatenate(keys))
+        person = assets.talk.person
+        self.habit = habit_of(self.planner, person.habit_units, person.habit_rate)
+        self.state = greet(self.state, self.habit, 0.0)
         self.felt, self.shown = np.zeros((n, 6)), np.zeros((n, 6))
         self.felt_target, self.shown_target = np.zeros((n, 6)), np.zeros((n, 6))
         for row, actor in enumerate(self.actors):
@@ -151,7 +154,7 @@ class _Bodies:
             self.felt, self.shown = feelings_after(self.felt, self.felt_target, self.shown, self.shown_target)
             since_s = time_s - self.burst_s
             emotion = leaked_emotion(self.assets.talk.person, self.felt, self.shown, since_s)
-            signal = PlannerSignal(emotion, self._words(emotion, time_s), time_s)
+            signal = PlannerSignal(emotion, self._words(emotion, time_s), time_s, self.habit)
             before = self.state
             self.state, decisions = self.planner.advance(before, signal, TICK_S)
             self._note(before, signal, decisions, tick)

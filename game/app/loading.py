@@ -8,7 +8,7 @@ from game.animation import Performer
 from game.app.content import load_talk_assets, stall_path
 from game.app.step import StepAssets
 from game.core.paths import ASSETS
-from game.embos import Planner, UnitLibrary, load_config
+from game.embos import Planner, UnitLibrary, check_habit, load_config
 from game.face import load_face
 
 __all__ = ["load_planner", "load_step_assets"]
@@ -24,6 +24,7 @@ def load_step_assets(stall: str = "flea", *, body: bool = True) -> StepAssets:
     """What a step needs; without ``body`` only talk and planner (nobody looks)."""
     talk = load_talk_assets(stall_path(stall))
     planner = load_planner()
+    check_habit(planner.library, talk.person.habit_units, talk.person.id)
     if not body:
         return StepAssets(talk, planner)
     performer = Performer(planner.library, layers=planner.tables.layers, radius=planner.config.radius)

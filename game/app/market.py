@@ -17,6 +17,7 @@ from game.app.talk import TalkAssets
 from game.app.wishes import PLAIN_WISH, WishText, load_wishes
 from game.core.errors import BadInput, GameError, Where
 from game.core.paths import ASSETS
+from game.embos import check_habit
 from game.story import Script
 
 if TYPE_CHECKING:
@@ -113,6 +114,7 @@ def has_pictures(person: str, stall: str, folder: Path = ASSETS) -> bool:
 def read_stall(name: str, base: StepAssets, *, stand_in: bool = False) -> Stall:
     """A stall's dialogue on the given body. Raises BadInput for a script with errors or missing pictures."""
     talk = load_talk_assets(stall_path(name))
+    check_habit(base.planner.library, talk.person.habit_units, talk.person.id)
     stall, person = talk.script.stall, talk.script.person.id
     pictured = has_pictures(person, stall)
     if not pictured and not stand_in:

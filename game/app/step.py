@@ -22,7 +22,7 @@ from game.app.talk import Choice, TalkAssets, TalkState, choose
 from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Speech, World, next_mark
 from game.core.emotion_space import EMOTIONS, SIX, with_neutral
 from game.core.springs import damp
-from game.embos import GestureCues, Planner, PlannerSignal
+from game.embos import GestureCues, Planner, PlannerSignal, habit_of
 from game.emotion import Temperament, shown_emotion
 from game.face import FaceAsset, FaceSignal, advance_face, start_face, viseme_track
 from game.story import Spoken, TimedText
@@ -203,7 +203,9 @@ def planner_stage(assets: StepAssets, world: World, intent: Intent) -> World:
     if world.speech is not None and world.speech.cues is not None:
         lead_s, window_s = library.stroke_lead_s(emotion)[0], assets.planner.config.word_window_s
         words = world.speech.cues.factors(world.time_s, lead_s, window_s)[None, :]
-    signal = PlannerSignal(emotion=emotion, words=words, time_s=world.time_s)
+    person = assets.talk.person
+    habit = habit_of(assets.planner, person.habit_units, person.habit_rate)
+    signal = PlannerSignal(emotion=emotion, words=words, time_s=world.time_s, habit=habit)
     state, decisions = assets.planner.advance(world.body.planner, signal, TICK_S)
     return replace(world, body=replace(world.body, planner=state, decisions=decisions, signal=signal))
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from game.app.talk import Choice, TalkAssets, TalkState
 from game.core.emotion_space import EMOTIONS, with_neutral
-from game.embos import Decisions, GestureCues, PlannerSignal, PlannerState
+from game.embos import Decisions, GestureCues, PlannerSignal, PlannerState, greet, habit_of
 from game.emotion import shown_emotion
 from game.emotion.rules import label_index
 from game.face import FaceSignal, VisemeTrack
@@ -185,12 +185,16 @@ def next_mark(
 
 
 def enter_talk(assets: StepAssets, world: World, talk: TalkState) -> World:
-    """The player steps up to the table: the first lines are queued, the feelings are those of the talk."""
+    """The player steps up to the table: the first lines are queued, the feelings are those of the talk, and what the
+    shopkeeper does out of habit is seen early."""
     from game.app.step import targets_of
 
     felt, shown = targets_of(assets, talk)
+    person, planner = assets.talk.person, assets.planner
+    met = greet(world.body.planner, habit_of(planner, person.habit_units, person.habit_rate), world.time_s)
     return replace(
         world,
+        body=replace(world.body, planner=met),
         talk=talk,
         speech=None,
         queue=talk.beat.lines,

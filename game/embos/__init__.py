@@ -4,10 +4,11 @@ from game.embos.clips import ClipBank, KnownClips, TakeClip, load_clips, pack_cl
 from game.embos.config import PlannerConfig, load_config
 from game.embos.cues import GestureCues, timed_tokens
 from game.embos.explain import Candidate
+from game.embos.habits import check_habit, greet, habit_of
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.planner import Planner
-from game.embos.planner_state import TICK_S, Decisions, PlannerSignal, PlannerState
+from game.embos.planner_state import TICK_S, Decisions, Habit, PlannerSignal, PlannerState
 from game.embos.stress import StressRule, stressed_moments
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 
@@ -19,6 +20,7 @@ __all__ = [
     "ClipBank",
     "Decisions",
     "GestureCues",
+    "Habit",
     "KnownClips",
     "MotionUnit",
     "Planner",
@@ -29,6 +31,9 @@ __all__ = [
     "TakeClip",
     "UnitLibrary",
     "Variant",
+    "check_habit",
+    "greet",
+    "habit_of",
     "load_clips",
     "load_config",
     "mix",

@@ -46,11 +46,11 @@ def explain(
     t = planner.tables
     rows = np.array([character])
     state = planner.prepared(state, signal)
-    factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s))
+    factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s), signal.habit)
     result: list[list[Candidate]] = []
     for at in range(len(t.layers)):
         candidates = [
-            _candidate(planner, state, factors, 0, character, at, place, signal.time_s)
+            _candidate(planner, state, factors, 0, character, at, place, signal)
             for place in range(t.width)
             if t.unit[at * t.width + place] >= 0
         ]
@@ -64,12 +64,11 @@ def explain_chosen(
     """For each of the characters (R,), what its layers chose in the tick and why; explain() without the losers."""
     t = planner.tables
     state = planner.prepared(state, signal)
-    factors = planner.evaluate(state, characters, signal.words[characters], planner.moment(signal.time_s, dt_s))
+    words, now = signal.words[characters], planner.moment(signal.time_s, dt_s)
+    factors = planner.evaluate(state, characters, words, now, signal.habit)
     return [
         [
-            _candidate(
-                planner, state, factors, row, character, at, int(factors.chosen[row, at]) - at * t.width, signal.time_s
-            )
+            _candidate(planner, state, factors, row, character, at, int(factors.chosen[row, at]) - at * t.width, signal)
             for at in range(len(t.layers))
         ]
         for row, character in enumerate(characters.tolist())
@@ -84,7 +83,7 @@ def _candidate(
     character: int,
     at: int,
     place: int,
-    time_s: float,
+    signal: PlannerSignal,
 ) -> Candidate:
     """The unit at a place of a layer; row: the character's in the factors."""
     t = planner.tables
@@ -101,7 +100,7 @@ def _candidate(
         state=float(one.state[0, at, place]),
         score=float(one.score[0, at, place]),
         chosen=bool(slot == one.chosen[0, at]),
-        reason=_reason(planner, state, one, character, at, place, time_s),
+        reason=_reason(planner, state, one, character, at, place, signal),
         source=_source(planner, state, character, slot),
     )
 
@@ -123,9 +122,15 @@ def _blockers(planner: Planner, factors: Factors, at: int, slot: int) -> str:
 
 
 def _reason(
-    planner: Planner, state: PlannerState, factors: Factors, character: int, at: int, place: int, time_s: float
+    planner: Planner,
+    state: PlannerState,
+    factors: Factors,
+    character: int,
+    at: int,
+    place: int,
+    signal: PlannerSignal,
 ) -> str:
-    t = planner.tables
+    t, time_s = planner.tables, signal.time_s
     slot, running = at * t.width + place, int(state.running[character, at])
     chosen = int(factors.chosen[0, at])
     waits_s = float(state.wait_s[character, slot]) - time_s
@@ -151,6 +156,9 @@ def _reason(
         if waiting:
             return "kept past its duration: everything else waits or suits less"
         return "starts again: its waiting time is over and nothing scores more"
+    habit = signal.habit
+    if habit is not None and slot in habit.slots and state.phi_state[character, slot] < habit.share:
+        return f"{_name(planner, slot)} is a habit: it comes whatever is felt, and its waiting time is over"
     if running >= t.slots:
         return "first choice: " + _because(planner, factors, at, place)
     before = _name(planner, running)

@@ -19,7 +19,7 @@ from game.embos.draws import character_keys, factor, uniform
 from game.embos.explain import Candidate, explain, explain_chosen
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
-from game.embos.planner_state import TICK_S, Decisions, Factors, PlannerSignal, PlannerState
+from game.embos.planner_state import TICK_S, Decisions, Factors, Habit, PlannerSignal, PlannerState
 from game.embos.tables import CHUNK, PlannerTables, build_tables
 
 __all__ = ["Planner"]
@@ -101,7 +101,7 @@ class Planner:
         rows = due.nonzero()[0]
         # Pieces that stay in the cache; a character's result does not depend on its piece.
         pieces = [rows[i : i + CHUNK] for i in range(0, rows.size, CHUNK)]
-        judged = [self.evaluate(state, piece, words[piece], now) for piece in pieces]
+        judged = [self.evaluate(state, piece, words[piece], now, signal.habit) for piece in pieces]
         return self._apply(state, rows, judged, signal.time_s, now)
 
     def moment(self, time_s: float, dt_s: float) -> float:
@@ -169,7 +169,9 @@ class Planner:
         settled[rows] = state.emotion[rows]
         return state.renewed(wait_s=wait_s, settled=settled)
 
-    def evaluate(self, state: PlannerState, rows: Ints, words: Floats, now: float) -> Factors:
+    def evaluate(
+        self, state: PlannerState, rows: Ints, words: Floats, now: float, habit: Habit | None = None
+    ) -> Factors:
         """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
         t, config = self.tables, self.config
         count, layers, width = len(rows), len(t.layers), t.width
@@ -188,6 +190,8 @@ class Planner:
             words = np.maximum(words, under_way & within[:, t.gesture_layer, None])
         phi = state.phi_state[rows]
         phi[:, t.gestures] *= words
+        if habit is not None:
+            phi[:, habit.slots] = np.maximum(phi[:, habit.slots], habit.share)
         follow = t.follow[running]
         score = (time * phi).reshape(count, layers, width)
         score *= follow

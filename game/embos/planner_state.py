@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TICK_S", "Decisions", "Factors", "PlannerSignal", "PlannerState"]
+__all__ = ["TICK_S", "Decisions", "Factors", "Habit", "PlannerSignal", "PlannerState"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -19,13 +19,22 @@ TICK_S = 1.0 / 30.0
 
 
 @dataclass(frozen=True, eq=False)
+class Habit:
+    """Units that somebody shows whatever they feel. slots: of those units; share: φ_state they have at least, 0..1."""
+
+    slots: Ints
+    share: float
+
+
+@dataclass(frozen=True, eq=False)
 class PlannerSignal:
     """What a tick brings. emotion: (n, 7) felt; words: (n, G) word factor per gesture unit, 1 at its word's moment,
-    else 0 (columns as library.gestures); time_s: the moment of this tick."""
+    else 0 (columns as library.gestures); time_s: the moment of this tick; habit: what these characters do anyway."""
 
     emotion: Floats
     words: Floats
     time_s: float
+    habit: Habit | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,10 +37,11 @@ _LETTERS = {"R": Quality.RIGHT, "W": Quality.WRONG, ".": Quality.NEUTRAL}
 class Temperament:
     """One person's way of feeling.
 
-    mask in [0, 1]: how much of what is felt the face hides (0 nothing, 1 all). leak in [0, 1]: how much of it the
-    body gives away. mood_prior: (7,) probabilities of the mood a talk starts in. negative: (6,) shares in which a
-    hurt is felt (sum 1). baseline: (6,) what the feelings decay toward. sensitivity: (6,) factors on feelings that
-    a dialogue line adds. quality: act -> (7 labels) how the act is taken.
+    habit_units: mannerisms they show whatever they feel, at least with the factor habit_rate; habit_label: what
+    strangers take them for. mask in [0, 1]: how much of what is felt the face hides (0 nothing, 1 all). leak in
+    [0, 1]: how much of it the body gives away. mood_prior: (7,) probabilities of the mood a talk starts in. negative:
+    (6,) shares in which a hurt is felt (sum 1). baseline: (6,) what the feelings decay toward. sensitivity: (6,)
+    factors on feelings that a dialogue line adds. quality: act -> (7 labels) how the act is taken.
     """
 
     id: str
@@ -49,6 +50,7 @@ class Temperament:
     leak: float
     habit_label: str
     habit_rate: float
+    habit_units: tuple[str, ...]
     mood_prior: Floats
     negative: Floats
     baseline: Floats
@@ -166,7 +168,7 @@ def _temperament(name: str, node: Node, acts: Mapping[str, tuple[str, ...]]) -> 
         raise BadInput(
             where=node["negative"].where, expected="shares with the sum 1", seen=round(float(negative.sum()), 4)
         )
-    habit = node["habit"].only("looks_like", "rate")
+    habit = node["habit"].only("looks_like", "rate", "units")
     baseline, sensitivity = node.get("baseline"), node.get("sensitivity")
     return Temperament(
         id=name,
@@ -175,6 +177,7 @@ def _temperament(name: str, node: Node, acts: Mapping[str, tuple[str, ...]]) -> 
         leak=node["leak"].as_float(0, 1),
         habit_label=habit["looks_like"].as_str(),
         habit_rate=habit["rate"].as_float(0, 1),
+        habit_units=tuple(item.as_str() for item in habit["units"].as_list()) if "units" in habit else (),
         mood_prior=prior / prior.sum(),
         negative=negative,
         baseline=np.zeros(6) if baseline is None else vector_of(baseline, SIX, default=0.0),

@@ -14,7 +14,8 @@ __all__ = ["VISITS", "habits_of"]
 VISITS = 32
 VISITS_SEED = 900_004
 USUAL = 2.0
-"""A unit seen so many times as often as feelings account for is a habit, as far as it is more than that."""
+"""A unit seen so many times as often as feelings account for is a habit, as far as it is more than that. One that
+regular customers know, because it comes in every greeting, is so as far as it is more than feelings account for."""
 
 
 def habits_of(assets: TalkAssets, observer: BodyObserver) -> dict[str, float]:
@@ -35,4 +36,7 @@ def habits_of(assets: TalkAssets, observer: BodyObserver) -> dict[str, float]:
     for name, count in seen.items():
         total[layers[name]] += count
     expected = BodyReading(library).expected(Acquaintance(assets).prior)
-    return {name: max(0.0, 1.0 - USUAL * expected[name] * total[layers[name]] / count) for name, count in seen.items()}
+    usual = {name: 1.0 if name in assets.person.habit_units else USUAL for name in seen}
+    return {
+        name: max(0.0, 1.0 - usual[name] * expected[name] * total[layers[name]] / count) for name, count in seen.items()
+    }
