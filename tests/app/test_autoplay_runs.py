@@ -221,3 +221,15 @@ def test_bad_arguments_give_one_line(capsys, words: list[str], says: str) -> Non
 def test_workers_are_as_many_as_asked() -> None:
     assert workers_of("3") == 3
     assert workers_of("auto") >= 1
+
+
+def test_conditions_are_counted_however_many_scripts_were_played_in_between(tmp_path) -> None:
+    job = Job(0, "flea", "random", 5, 0, 4, cover=True)
+    first = work(job).coverage.conditions
+    tiny = (Path(__file__).parents[1] / "story" / "tiny.yaml").read_text(encoding="utf-8")
+    for number in range(9):
+        path = tmp_path / f"tiny{number}.yaml"
+        path.write_text(tiny, encoding="utf-8")
+        work(Job(0, str(path), "random", 5, 0, 1, cover=True))
+    assert any(yes for _, yes in first)
+    assert work(job).coverage.conditions == first

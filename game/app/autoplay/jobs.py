@@ -108,8 +108,8 @@ def _observer(mode: Mode, explain: bool, thread: int) -> BodyObserver:
 
 
 @lru_cache(maxsize=32)
-def _seat(stall: str, policy: str, cover: bool, bodies: bool, thread: int) -> Seat:
-    assets = _assets(stall, cover, thread)[0]
+def _seat(assets: TalkAssets, policy: str, bodies: bool, thread: int) -> Seat:
+    # Of these very assets: a seat that outlived them would play where nobody counts.
     if not bodies:
         return seat(assets, policy)
     observer = _observer("full", False, thread)
@@ -130,13 +130,13 @@ def _record(job: Job, policy: str, episode: int, decisions: list[Decision]) -> N
     write_talk(path, job.stall, policy, moves, decisions[-1].after, _content(job.stall))
 
 
-def _players(job: Job) -> list[Seat]:
+def _players(job: Job, assets: TalkAssets) -> list[Seat]:
     mixture = mixture_of(job.population)
     names = [
         mixture.draw(random.Random(f"who {job.seed} {episode}").random())
         for episode in range(job.first, job.first + job.count)
     ]
-    return [_seat(job.stall, name, job.cover, job.bodies, get_ident()) for name in names]
+    return [_seat(assets, name, job.bodies, get_ident()) for name in names]
 
 
 @lru_cache(maxsize=8)
@@ -146,7 +146,8 @@ def _street(stall: str, thread: int) -> Street:
     if script.stall not in bazaar.stalls or not hears_news(script):
         return Street(bazaar)
     known = {path.stem for path in shipped_stalls()} - {script.stall}
-    return Street(bazaar, tuple(_seat(name, "random", False, False, thread) for name in bazaar.stalls if name in known))
+    others = [_assets(name, False, thread)[0] for name in bazaar.stalls if name in known]
+    return Street(bazaar, tuple(_seat(assets, "random", False, thread) for assets in others))
 
 
 def _episodes(job: Job, players: list[Seat]) -> Iterator[list[list[Decision]]]:
@@ -180,10 +181,10 @@ def _talks(job: Job, players: list[Seat]) -> Iterator[list[Decision]]:
 def work(job: Job) -> Result:
     """Play the episodes of a job. Raises BadInput for content that cannot be played to an end."""
     result, rows = Result(job.number), []
-    _, trace = _assets(job.stall, job.cover, get_ident())
+    assets, trace = _assets(job.stall, job.cover, get_ident())
     if trace is not None:
         trace.take()
-    players = _players(job)
+    players = _players(job, assets)
     for episode, (player, talks) in enumerate(zip(players, _episodes(job, players), strict=True), job.first):
         for visit, decisions in enumerate(talks, 1):
             if not decisions:
