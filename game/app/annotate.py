@@ -16,10 +16,11 @@ stands beside it. Proposals carry a confidence and count for nothing until someb
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from game.app.arguments import parse_size
-from game.core.errors import MissingPart
+from game.core.errors import BadInput, MissingPart
 from game.core.paths import ASSETS
 
 __all__ = ["add_arguments", "run"]
@@ -46,8 +47,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="machine-readable result")
 
 
+FINDINGS_SHOWN = 200
+
+
 def run(args: argparse.Namespace) -> int:
-    """Hand over to the desk, which is imported only now: the game itself never needs it."""
+    """Hand over to the desk. Whatever is wrong with a file is told at once, a line each; nothing is written then."""
+    try:
+        return _run(args)
+    except BadInput as error:
+        if not error.findings:
+            raise
+        for finding in error.findings[:FINDINGS_SHOWN]:
+            print(finding, file=sys.stderr)
+        print(f"{len(error.findings)} findings; nothing was changed", file=sys.stderr)
+        return 2
+
+
+def _run(args: argparse.Namespace) -> int:
+    # Imported only now: the game itself never needs it.
     from game.tools.annotate import command
 
     if args.trial:

@@ -18,9 +18,9 @@ __all__ = ["Known", "UnitsWatch", "load_body", "take_up_units", "watched_units"]
 
 POLL_S = 0.1
 """Files are looked at ten times a second: new units are to be seen within a second."""
-YIELD_SHARE, MOST_YIELD_S = 0.5, 0.1
-"""While new units are read a frame lasts longer by this share of it: drawing keeps the interpreter to itself, and the
-reading would hardly get on beside it."""
+YIELD_SHARE, MOST_YIELD_S = 0.5, 1.0
+"""While new units are read a frame waits for them by this share of it: drawing keeps the interpreter to itself, and the
+reading would hardly get on beside it. A machine that draws slowly waits once, one that draws fast is not seen to."""
 SAID_S = 6.0
 """How long the news of new units stands; that they are broken stands until they are not."""
 

@@ -57,7 +57,10 @@ class BadInput(GameError):
     """A file, argument or value from outside that cannot be used.
 
     ``str(error)`` is always one line: ``WHERE: expected X, saw Y (hint)`` or ``WHERE: message (hint)``.
+    findings: all that is wrong, where this one stands for several.
     """
+
+    findings: tuple[BadInput, ...] = ()
 
     def __init__(
         self,

@@ -24,8 +24,8 @@ class Findings:
         return len(self.items)
 
     def add(self, error: BadInput) -> None:
-        """Note one finding."""
-        self.items.append(error)
+        """Note one finding, or all that it stands for."""
+        self.items += error.findings or (error,)
 
     @contextmanager
     def collect(self, *, reading: bool = False) -> Iterator[None]:
@@ -34,10 +34,12 @@ class Findings:
             yield
         except BadInput as error:
             self.broken = self.broken or reading
-            self.items.append(error)
+            self.add(error)
 
     def raise_first(self) -> None:
         """Raise the first finding as one line that says how many more there are; nothing where there is none."""
         if self.items:
             more = len(self.items) - 1
-            raise BadInput(self.items[0].message + (f" (and {more} more)" if more else ""))
+            error = BadInput(self.items[0].message + (f" (and {more} more)" if more else ""))
+            error.findings = tuple(self.items) if more else ()
+            raise error

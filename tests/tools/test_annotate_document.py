@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from game.app.cli import main
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
@@ -211,3 +212,42 @@ def test_every_fault_of_a_file_is_counted(tmp_path: Path) -> None:
     path.write_text(text, encoding="utf-8")
     with pytest.raises(BadInput, match=r"\(and 1 more\)"):
         files.read_document(path)
+
+
+def test_all_that_is_wrong_is_told_at_once_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    clean = _document().with_marks(
+        [Mark(0.0, 2.0, "posture", "upright"), Mark(2.0, 4.0, "posture", "lean_back"), Mark(1.0, 2.0, "gesture", "nod")]
+    )
+    path, rows, tiers = tmp_path / "t.yaml", tmp_path / "t.csv", tmp_path / "t.eaf"
+    files.save(clean, path)
+    text = path.read_text().replace("start_s: 2.000", "start_s: 1.500").replace("frames: [60,", "frames: [45,")
+    path.write_text(text.replace("layer: gesture", "layer: gestur"))
+    lines = path.read_text().splitlines()
+    late, odd = (next(i for i, line in enumerate(lines, 1) if word in line) for word in ("lean_back", "gestur"))
+    with pytest.raises(BadInput) as caught:
+        files.read_document(path)
+    assert [f"{path}:{odd}:" in str(e) or f"{path}:{late}:" in str(e) for e in caught.value.findings] == [True, True]
+
+    table.write_csv(clean, rows)
+    rows.write_text(
+        rows.read_text().replace("lean_back,2.000", "lean_back,1.500").replace("gesture,nod,1", "gesture,,1")
+    )
+    with pytest.raises(BadInput) as caught:
+        table.read_csv(rows)
+    assert [str(e).split(": ")[0] for e in caught.value.findings] == [f"{rows}:3", f"{rows}:4"]
+
+    elan.write_eaf(clean, tiers)
+    found = tiers.read_text().replace("nod", "").replace('TIME_VALUE="4000"', 'TIME_VALUE="1000"')
+    tiers.write_text(found)
+    with pytest.raises(BadInput) as caught:
+        elan.read_eaf(tiers)
+    assert len(caught.value.findings) == 2
+
+    (tmp_path / "t.bvh").write_text("")
+    before = rows.read_bytes()
+    arguments = ["annotate", str(path), "--compare", str(path)]
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 3
+    assert said[-1] == "2 findings; nothing was changed"
+    assert rows.read_bytes() == before

@@ -26,7 +26,8 @@ class Actions:
     """behaviours: the repertoire's file; learn: folder of annotated takes to learn from besides those of the desk.
 
     shelf: motions that have been read.
-    searching, typing: what the window is asked to open (a search for a behaviour; the field of words or note).
+    searching, typing: what the window is asked to open (a search for a behaviour; the field of words or note);
+    findings: all that kept the last try from being written, until it has been read.
     """
 
     desk: Desk
@@ -40,6 +41,7 @@ class Actions:
     help: bool = False
     leaving: bool = False
     done: bool = False
+    findings: tuple[str, ...] = ()
     job: Job | None = None
     second: Document | None = None
     second_name: str = ""
@@ -86,8 +88,8 @@ class Actions:
 
     def let_go(self) -> None:
         """Close what is open, else let the selection go."""
-        if self.help:
-            self.help = False
+        if self.help or self.findings:
+            self.help, self.findings = False, ()
         elif self.desk.begun_s is not None:
             self.desk.begun_s = None
         else:
@@ -140,6 +142,11 @@ class Actions:
 
     def try_it(self) -> None:
         """Save, count the units of the folder anew; a game that watches takes them up."""
+        unsaid = [sheet.now.take for sheet in self.desk.sheets if not sheet.now.emotion]
+        if unsaid:
+            told = f"which emotion does {unsaid[0]} show? say it on the page Span, with nothing selected"
+            self.desk.tell(told, failed=True)
+            return
         if not self.desk.save():
             return
         folder, behaviours, shelf = self.desk.sheet.bvh.parent, self.behaviours, self.shelf
@@ -149,11 +156,13 @@ class Actions:
         """Let time pass; take in what has been finished."""
         self.desk.tick(elapsed_s)
         if self.job is not None:
+            self.job.wait(min(0.5 * elapsed_s, 0.5))
             over, wrong = self.job.poll()
             if over:
                 self.job = None
-            if wrong:
-                self.desk.tell(wrong, failed=True)
+            if wrong is not None:
+                self.desk.tell(str(wrong), failed=True)
+                self.findings = tuple(str(f) for f in wrong.findings) if isinstance(wrong, BadInput) else ()
 
     def quit(self) -> None:
         """Close the desk; where work is unsaved, ask first."""

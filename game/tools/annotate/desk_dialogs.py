@@ -38,6 +38,8 @@ class Dialogs:
         """One frame."""
         if self.actions.help:
             self._keys(size)
+        if self.actions.findings:
+            self._findings(size)
         if self._timeline.menu_s is not None:
             self._menu_s, self._timeline.menu_s = self._timeline.menu_s, None
             imgui.open_popup("span menu")
@@ -76,6 +78,28 @@ class Dialogs:
                     y += 25 * k
         if imgui.is_mouse_clicked(0) and imgui.is_window_hovered():
             self.actions.help = False
+        imgui.end()
+        imgui.pop_style_color()
+
+    def _findings(self, size: tuple[int, int]) -> None:
+        k, findings = self.pen.k, self.actions.findings
+        self._middle(size, 900, min(150.0 + 44.0 * len(findings), 560.0))
+        imgui.push_style_color(imgui.Col_.window_bg, colour("paper"))
+        imgui.begin("findings", None, imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move)
+        at = imgui.get_window_pos()
+        many = "one thing is wrong" if len(findings) == 1 else f"{len(findings)} things are wrong"
+        self.pen.text(at.x + 24 * k, at.y + 16 * k, "Nothing was written", "red", bold=True, size=22)
+        told = f"{many}; the game goes on with the units it has"
+        self.pen.text(at.x + 24 * k, at.y + 44 * k, told, "faint", 16)
+        imgui.set_cursor_pos(imgui.ImVec2(20 * k, 74 * k))
+        imgui.begin_child("list", imgui.ImVec2(860 * k, -56 * k))
+        for line in findings:
+            imgui.text_wrapped(line)
+            imgui.spacing()
+        imgui.end_child()
+        imgui.set_cursor_pos_x(20 * k)
+        if imgui.button("Close  Esc"):
+            self.actions.findings = ()
         imgui.end()
         imgui.pop_style_color()
 

@@ -34,7 +34,7 @@ class Job:
     work: Callable[[], Any]
     done: Callable[[Any], None]
     _result: list[Any] = field(default_factory=list)
-    _error: list[str] = field(default_factory=list)
+    _error: list[Exception] = field(default_factory=list)
     _thread: threading.Thread | None = None
 
     def start(self) -> Job:
@@ -47,16 +47,21 @@ class Job:
         try:
             self._result.append(self.work())
         except (GameError, OSError) as error:
-            self._error.append(str(error))
+            self._error.append(error)
 
-    def poll(self) -> tuple[bool, str]:
+    def wait(self, seconds: float) -> None:
+        """Leave it the interpreter for so long, or until it is over: drawing would keep it to itself."""
+        if self._thread is not None:
+            self._thread.join(seconds)
+
+    def poll(self) -> tuple[bool, Exception | None]:
         """Whether it is over, and what went wrong; takes the result in when it is."""
         assert self._thread is not None, "start comes first"
         if self._thread.is_alive():
-            return False, ""
+            return False, None
         if self._result:
             self.done(self._result.pop())
-        return True, self._error[0] if self._error else ""
+        return True, self._error[0] if self._error else None
 
 
 def learnable(folders: Sequence[Path], without: Path) -> list[Path]:
@@ -107,13 +112,14 @@ def proposed_marks(
 
 
 def tried(folder: Path, behaviours: Path, shelf: ClipShelf) -> str:
-    """The units of a folder of takes, counted anew into units.yaml and clips.npz beside it. Raises BadInput with all
-    that is wrong."""
+    """The units of a folder of takes, counted anew into units.yaml and clips.npz beside it. Raises a BadInput with
+    all that is wrong."""
     findings = Findings()
     takes, units = counted(folder, behaviours, findings, read_clip=shelf.clip)
     if len(findings):
-        more = [str(error) for error in findings.items]
-        raise BadInput(f"{len(more)} findings, no units were written: " + "; ".join(more[:3]))
+        error = BadInput(f"no units were written: {findings.items[0]}")
+        error.findings = tuple(findings.items)
+        raise error
     out = folder.resolve().parent / "units.yaml"
     changed = write_units(takes, units, out, shelf.packed)
     verb = "written" if changed else "unchanged"

@@ -37,8 +37,8 @@ class Orbit:
 
     yaw_deg: float = 25.0
     pitch_deg: float = 8.0
-    distance_m: float = 3.1
-    target: tuple[float, float, float] = (0.0, 0.74, 0.05)
+    distance_m: float = 3.25
+    target: tuple[float, float, float] = (0.0, 0.76, 0.05)
 
     def turn(self, right_px: float, down_px: float) -> None:
         """The person turns with the mouse."""

@@ -16,6 +16,7 @@ from imgui_bundle import imgui
 from game.app.play import need_display
 from game.core.paths import ASSETS
 from game.embos.clip_shelf import ClipShelf
+from game.embos.findings import Findings
 from game.render import Device
 from game.tools.annotate.command import repertoire_of
 from game.tools.annotate.desk_actions import STYLES, Actions
@@ -303,7 +304,12 @@ def open_desk(args: argparse.Namespace, takes: Sequence[Path]) -> int:
     """Open the window; returns when it is closed. Raises BadInput for takes that cannot be read."""
     args.behaviours = args.behaviours or project_behaviours(takes, ASSETS / "motion" / "behaviours.yaml")
     shelf = ClipShelf()
-    desk = Desk([Sheet.open(path, args.author, shelf) for path in takes], repertoire_of(args))
+    findings, sheets = Findings(), []
+    for path in takes:
+        with findings.collect():
+            sheets.append(Sheet.open(path, args.author, shelf))
+    findings.raise_first()
+    desk = Desk(sheets, repertoire_of(args))
     actions = Actions(desk, args.behaviours, args.learn, shelf)
     refused = [sheet.refusal for sheet in desk.sheets if sheet.refusal]
     desk.tell(refused[0] if refused else "F1 shows every key", failed=bool(refused))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterator
+import itertools
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
+from game.core.errors import BadInput, Where
+from game.embos.findings import Findings
 from game.embos.units import LAYERS
 
-__all__ = ["MOMENT_S", "TRACKS", "Document", "Mark", "Word", "on_grid"]
+__all__ = ["MOMENT_S", "TRACKS", "Document", "Mark", "Word", "check_overlaps", "on_grid"]
 
 MOMENT_S = 0.001
 """Times are kept in whole milliseconds: ELAN's unit, and what the files hold."""
@@ -112,6 +115,24 @@ class Document:
     def frame_of(self, time_s: float) -> int:
         """The nearest frame."""
         return min(max(round(time_s * self.fps), 0), self.frames)
+
+
+def check_overlaps(document: Document, places: Mapping[Mark, Where], findings: Findings) -> None:
+    """Within one layer only one thing can be done at a time: a finding for each mark that begins too early.
+
+    places: where each mark stands in its file.
+    """
+    for layer in LAYERS:
+        for before, after in itertools.pairwise(document.of_layer(layer)):
+            if after.start_s < before.end_s - 1e-6:
+                findings.add(
+                    BadInput(
+                        f"overlapping {layer} spans",
+                        where=places.get(after),
+                        expected=f"a start at or after {before.end_s:g} s, where {before.behaviour} ends",
+                        seen=f"{after.behaviour} at {after.start_s:g}",
+                    )
+                )
 
 
 def _order(mark: Mark) -> tuple[float, float, str, str]:

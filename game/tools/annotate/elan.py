@@ -13,9 +13,10 @@ from xml.etree import ElementTree
 
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
+from game.embos.findings import Findings
 from game.embos.units import LAYERS
 from game.formats.files import read_bytes, write_text
-from game.tools.annotate.document import Document, Mark, Word, on_grid
+from game.tools.annotate.document import Document, Mark, Word, check_overlaps, on_grid
 
 __all__ = ["eaf_text", "read_eaf", "write_eaf"]
 
@@ -136,7 +137,8 @@ def _field(mark: Mark, name: str) -> str:
 def read_eaf(path: Path, like: Document | None = None) -> Document:
     """A document from an .eaf file. like: the take it belongs to, for what a foreign file does not say.
 
-    Raises BadInput, with the line where XML is broken; entities and document types are refused.
+    Raises a BadInput that holds all that is wrong with its annotations, each with its place, or the line where XML is
+    broken; entities and document types are refused.
     """
     root = _parse(path)
     if root.tag != "ANNOTATION_DOCUMENT":
@@ -146,29 +148,35 @@ def read_eaf(path: Path, like: Document | None = None) -> Document:
     below = _referring(root)
     marks: list[Mark] = []
     words: list[Word] = []
+    places: dict[Mark, Where] = {}
+    findings = Findings()
     for tier in root.iter("TIER"):
         name = tier.get("TIER_ID", "")
         if name not in LAYERS and name != _SPOKEN:
             continue
         for own in tier.iter("ALIGNABLE_ANNOTATION"):
-            start, end = (_slot(own, key, times, path) for key in ("TIME_SLOT_REF1", "TIME_SLOT_REF2"))
-            value = (own.findtext("ANNOTATION_VALUE") or "").strip()
-            pointer = f"/{name}/{own.get('ANNOTATION_ID', '?')}"
-            if end <= start:
-                raise BadInput("annotation", where=Where(path, pointer=pointer), expected="an end after its start",
-                               seen=f"{start:g} to {end:g} s")  # fmt: skip
-            if name == _SPOKEN:
-                words.append(Word(start, end, value))
-            elif value:
-                marks.append(
-                    _mark(Mark(start, end, name, value), below.get(own.get("ANNOTATION_ID", ""), {}), path, pointer)
-                )
-            else:
-                raise BadInput("annotation", where=Where(path, pointer=pointer), expected="a behaviour", seen="nothing")
+            where = Where(path, pointer=f"/{name}/{own.get('ANNOTATION_ID', '?')}")
+            with findings.collect():
+                start, end = (_slot(own, key, times, where) for key in ("TIME_SLOT_REF1", "TIME_SLOT_REF2"))
+                value = (own.findtext("ANNOTATION_VALUE") or "").strip()
+                if end <= start:
+                    seen = f"{start:g} to {end:g} s"
+                    raise BadInput("annotation", where=where, expected="an end after its start", seen=seen)
+                if name == _SPOKEN:
+                    words.append(Word(start, end, value))
+                elif value:
+                    about = below.get(own.get("ANNOTATION_ID", ""), {})
+                    marks.append(_mark(Mark(start, end, name, value), about, where))
+                    places[marks[-1]] = where
+                else:
+                    raise BadInput("annotation", where=where, expected="a behaviour", seen="nothing")
     if not document.frames:
         last = max([m.end_s for m in marks] + [w.end_s for w in words], default=0.0)
         document = replace(document, frames=max(round(last * document.fps + 0.499), 1))
-    return replace(document, spoken=tuple(sorted(words))).with_marks(marks)
+    document = replace(document, spoken=tuple(sorted(words))).with_marks(marks)
+    check_overlaps(document, places, findings)
+    findings.raise_first()
+    return document
 
 
 def _parse(path: Path) -> ElementTree.Element:
@@ -201,10 +209,9 @@ def _times(root: ElementTree.Element, path: Path) -> dict[str, float]:
     return times
 
 
-def _slot(own: ElementTree.Element, key: str, times: dict[str, float], path: Path) -> float:
+def _slot(own: ElementTree.Element, key: str, times: dict[str, float], where: Where) -> float:
     name = own.get(key, "")
     if name not in times:
-        where = Where(path, pointer=f"/{own.get('ANNOTATION_ID', '?')}")
         raise BadInput("annotation", where=where, expected=f"{key} with a time", seen=name)
     return times[name]
 
@@ -254,7 +261,7 @@ def _referring(root: ElementTree.Element) -> dict[str, dict[str, str]]:
     return about
 
 
-def _mark(mark: Mark, about: dict[str, str], path: Path, pointer: str) -> Mark:
+def _mark(mark: Mark, about: dict[str, str], place: Where) -> Mark:
     def number(key: str, low: float, high: float) -> float | None:
         if key not in about:
             return None
@@ -263,7 +270,7 @@ def _mark(mark: Mark, about: dict[str, str], path: Path, pointer: str) -> Mark:
         except ValueError:
             value = float("nan")
         if not low <= value <= high:
-            where = Where(path, pointer=f"{pointer}@{key}")
+            where = Where(place.path, pointer=f"{place.pointer}@{key}")
             raise BadInput(key, where=where, expected=f"a number from {low:g} to {high:g}", seen=about[key])
         return value
 

@@ -6,7 +6,6 @@ Times stand in seconds and in frames; the seconds count, the frames must agree w
 from __future__ import annotations
 
 import hashlib
-import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +19,7 @@ from game.embos.units_file import one_of
 from game.formats.bvh import read_bvh
 from game.formats.files import read_bytes, write_text
 from game.formats.yaml_source import Node, load_yaml, parse_yaml
-from game.tools.annotate.document import Document, Mark, Word, on_grid
+from game.tools.annotate.document import Document, Mark, Word, check_overlaps, on_grid
 
 __all__ = ["autosave_path", "clear_autosave", "document_text", "open_document", "read_document", "recover", "save",
            "write_autosave"]  # fmt: skip
@@ -77,9 +76,11 @@ def _document(root: Node, path: Path, findings: Findings) -> Document | None:
         )  # fmt: skip
         marks: list[Mark] = []
         words: list[Word] = []
+        places: dict[Mark, Where] = {}
         for node in _items(root, "spans"):
             with findings.collect():
                 marks.append(_mark(node, fps))
+                places[marks[-1]] = node.where
         for node in _items(root, "spoken"):
             with findings.collect():
                 words.append(_word(node))
@@ -87,20 +88,8 @@ def _document(root: Node, path: Path, findings: Findings) -> Document | None:
         last = max([m.end_s for m in marks] + [w.end_s for w in words], default=0.0)
         count = frames.as_int(1, 10_000_000) if frames is not None else max(round(last * fps + 0.499), 1)
         document = replace(document, frames=count, spoken=tuple(sorted(words))).with_marks(marks)
-        for layer in LAYERS:
-            for before, after in itertools.pairwise(document.of_layer(layer)):
-                if after.start_s < before.end_s - 1e-6:
-                    findings.add(_overlap(path, before, after))
+        check_overlaps(document, places, findings)
     return document
-
-
-def _overlap(path: Path, before: Mark, after: Mark) -> BadInput:
-    return BadInput(
-        f"overlapping {after.layer} spans",
-        where=Where(path),
-        expected=f"a start at or after {before.end_s:g} s, where {before.behaviour} ends",
-        seen=f"{after.behaviour} at {after.start_s:g}",
-    )
 
 
 def _items(root: Node, key: str) -> list[Node]:

@@ -9,9 +9,10 @@ from pathlib import Path
 
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
+from game.embos.findings import Findings
 from game.embos.units import LAYERS
 from game.formats.files import decode_utf8, read_bytes, write_text
-from game.tools.annotate.document import Document, Mark, Word, on_grid
+from game.tools.annotate.document import Document, Mark, Word, check_overlaps, on_grid
 
 __all__ = ["COLUMNS", "csv_text", "read_csv", "write_csv"]
 
@@ -56,11 +57,13 @@ def _places(document: Document, what: Mark | Word) -> list[object]:
 
 
 def read_csv(path: Path) -> Document:
-    """A document from CSV. Raises BadInput with the line."""
+    """A document from CSV. Raises a BadInput with the line that holds all that is wrong in its rows."""
     text = decode_utf8(read_bytes(path, max_bytes=MAX_BYTES, what="CSV file"), path)
     document: Document | None = None
     marks: list[Mark] = []
     words: list[Word] = []
+    places: dict[Mark, Where] = {}
+    findings = Findings()
     rows = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
         header = next(rows, [])
@@ -68,24 +71,30 @@ def read_csv(path: Path) -> Document:
             raise BadInput("CSV header", where=Where(path, 1), expected=",".join(COLUMNS), seen=",".join(header))
         for row in rows:
             where = Where(path, rows.line_num)
-            if len(row) != len(COLUMNS):
-                raise BadInput("row", where=where, expected=f"{len(COLUMNS)} columns", seen=len(row))
-            if len(marks) + len(words) > MAX_ROWS:
+            if len(marks) + len(words) + len(findings) > MAX_ROWS:
                 raise BadInput("CSV file", where=where, expected=f"at most {MAX_ROWS} rows", seen="more")
-            cell = dict(zip(COLUMNS, row, strict=True))
-            own = _head(cell, where)
-            if document is not None and own != document:
-                raise BadInput("row", where=where, expected=f"the take {document.take} as above", seen=own.take)
-            document = own
-            if cell["layer"] == _SPOKEN:
-                words.append(Word(*_times(cell, where), cell["words"]))
-            elif cell["layer"]:
-                marks.append(_mark(cell, where))
+            with findings.collect():
+                if len(row) != len(COLUMNS):
+                    raise BadInput("row", where=where, expected=f"{len(COLUMNS)} columns", seen=len(row))
+                cell = dict(zip(COLUMNS, row, strict=True))
+                own = _head(cell, where)
+                if document is not None and own != document:
+                    raise BadInput("row", where=where, expected=f"the take {document.take} as above", seen=own.take)
+                document = own
+                if cell["layer"] == _SPOKEN:
+                    words.append(Word(*_times(cell, where), cell["words"]))
+                elif cell["layer"]:
+                    marks.append(_mark(cell, where))
+                    places[marks[-1]] = where
     except csv.Error as error:
         raise BadInput(f"CSV: {error}", where=Where(path, rows.line_num)) from None
     if document is None:
+        findings.raise_first()
         raise BadInput("CSV file", where=Where(path), expected="at least one row", seen="none")
-    return replace(document, spoken=tuple(sorted(words))).with_marks(marks)
+    document = replace(document, spoken=tuple(sorted(words))).with_marks(marks)
+    check_overlaps(document, places, findings)
+    findings.raise_first()
+    return document
 
 
 def _head(cell: dict[str, str], where: Where) -> Document:
