@@ -223,9 +223,11 @@ def _add_remains(source: Source, age_s: Floats, row: Floats, speed: Floats) -> N
     curves = _CURVES[0] + u * (_CURVES[1] + u * _CURVES[2])
     curves[0] *= square * v
     curves[1] *= square / source.ends_s
-    remains = (curves.take(ch.PART_OF_CHANNEL, axis=-1) * source.offset).sum(axis=1)
-    row += remains[0]
-    speed += remains[1]
+    remains = curves.take(ch.PART_OF_CHANNEL, axis=-1)
+    remains *= source.offset
+    for shown, (of_offset, of_speed) in ((row, remains[0]), (speed, remains[1])):
+        shown += of_offset
+        shown += of_speed
     # The hands' arcs: a bump that starts and ends with no speed and no acceleration.
     u, v = u[0].take(_ARMS, axis=-1), v[0].take(_ARMS, axis=-1)
     rest = u * v

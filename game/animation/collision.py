@@ -112,7 +112,7 @@ def push_out(maps: Floats, points: Floats) -> Floats | None:
     """points: (n, 14, 4) of the left, then the right hand, homogeneous, model space -> push (n, 2, 3), metres; None
     where all is clear."""
     push = _push_from_body(maps, points)
-    if points[..., 1].min() >= TABLE_TOP_M + _TALLEST:
+    if np.minimum.reduce(points[..., 1], axis=None) >= TABLE_TOP_M + _TALLEST:
         return push
     lift = _table(points.reshape(len(points), _HANDS, _POINTS, 4))
     if lift is None:

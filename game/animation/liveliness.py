@@ -226,7 +226,7 @@ def advance_life(
     dart, counts = state.dart, state.counts
     if np.count_nonzero(gaze.leap):
         timers[:, _BLINK_LEFT] = np.where(gaze.leap, np.minimum(timers[:, _BLINK_LEFT], 0.0), timers[:, _BLINK_LEFT])
-    if timers[:, _DART_LEFT : _BLINK_LEFT + 1].min() <= 0.0:
+    if np.minimum.reduce(timers[:, _DART_LEFT : _BLINK_LEFT + 1], axis=None) <= 0.0:
         dart, counts = _draw(config, state, shares, timers)
     depth, sway, tempo = rates[:, 5], rates[:, 6:7], rates[:, 7:]
     mood = state.mood + (mood - state.mood) * (1.0 - 2.0 ** (-dt_s / config.mood_half_life_s))
@@ -266,13 +266,13 @@ def look(
     attention = life.mood[:, :1]
     wanted = angle[:, 1] * (config.eye_scale * attention)
     wanted += life.dart
-    if attention.min() < 0.999:
+    if np.minimum.reduce(attention, axis=None) < 0.999:
         # Where a unit's own gaze leads, the eyes go a little further the way the head has turned.
         lead = (chest[:, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
         wanted[:, 0] += (1.0 - attention[:, 0]) * np.arctan2(lead[:, 0], lead[:, 2]) * (0.5 * config.eye_scale[0])
     step = np.minimum(np.maximum(wanted, -1.0), 1.0) - gaze.eye
     eye = gaze.eye + step * (1.0 - 2.0 ** (-dt_s / config.eye_half_life_s))
-    return Gaze(eye, angle[:, 0], np.abs(step).max(axis=1) > _SHIFT)
+    return Gaze(eye, angle[:, 0], np.maximum.reduce(np.abs(step), axis=1) > _SHIFT)
 
 
 def _draw(config: LifeConfig, state: Life, shares: Floats, timers: Floats) -> tuple[Floats, NDArray[np.int64]]:
