@@ -40,6 +40,7 @@ from game.render import (
 )
 from game.render.assets import load_character, load_picture, load_stall
 from game.render.avatar_model import AvatarLook, AvatarModel
+from game.render.face_planes import face_planes
 from game.render.mood import MARKET_MOOD, read_mood
 
 if TYPE_CHECKING:
@@ -105,11 +106,12 @@ def load_stage(
     """
     characters, stalls = folder / "characters", folder / "stalls"
     model: CharacterModel | AvatarModel
+    style = _style(characters / f"{person}.yaml")
     if avatar is not None:
         model, rig, lift_m = avatar.model, avatar.rig, avatar.lift_m
     else:
         vrm = (models or characters) / f"{person}.vrm"
-        model, rig = load_character(vrm), load_rig(vrm)
+        model, rig = replace(load_character(vrm), planes=face_planes(style)), load_rig(vrm)
         head = rig.skeleton.rest_model[rig.driven[rig.source == _HEAD], 1, 3]
         lift_m = float(head[0] - REFERENCE.rest_model[_HEAD, 1, 3]) if len(head) else 0.0
     told = load_yaml(stalls / f"{stall}.yaml")
@@ -117,7 +119,7 @@ def load_stage(
     return StageAssets(
         model=model,
         rig=rig,
-        face=_style(characters / f"{person}.yaml"),
+        face=style,
         lift_m=lift_m,
         avatar=avatar,
         stall=load_stall(stalls / f"{stall}.glb", MARKET_MOOD if mood is None else read_mood(mood)),

@@ -13,6 +13,7 @@ from typing import Any
 
 from game.formats.gltf_model import GltfFile
 from game.formats.json_shape import Fields, Flag, Index, Items, Number, Report, Table, Text, check
+from game.formats.srgb import linear_light
 
 __all__ = ["MTOON", "VRM0_MATERIAL", "ToonMaterial", "ToonTexture", "toon_materials"]
 
@@ -212,7 +213,7 @@ def _vrm0(file: GltfFile, base: ToonMaterial, source: Mapping[str, Any]) -> Toon
 
     def colour(name: str, default: float) -> Colour:
         values = vectors.get(name, [])
-        return _linear(values[:3]) if len(values) >= 3 else (default, default, default)
+        return linear_light(values[:3]) if len(values) >= 3 else (default, default, default)
 
     def texture(name: str) -> ToonTexture | None:
         at = textures.get(name, -1)
@@ -296,9 +297,4 @@ def _plain_texture(file: GltfFile, index: int) -> ToonTexture | None:
 
 def _rgb(values: Any) -> Colour:
     r, g, b = (max(float(v), 0.0) for v in values[:3])
-    return (r, g, b)
-
-
-def _linear(values: Any) -> Colour:
-    r, g, b = (max(float(v), 0.0) ** 2.2 for v in values[:3])
     return (r, g, b)

@@ -7,6 +7,7 @@ from typing import Any
 
 from game.formats.gltf_model import GltfFile
 from game.formats.json_shape import Report
+from game.formats.srgb import linear_light
 from game.formats.vrm_model import (
     HUMAN_BONES,
     SpringChain,
@@ -143,8 +144,7 @@ def _material_changes(
         if material is None or len(value) != 4:
             continue
         if name in _COLOURS:
-            linear = (max(v, 0.0) ** 2.2 for v in value[:3])
-            colours.append((material, _COLOURS[name], (*linear, value[3])))
+            colours.append((material, _COLOURS[name], (*linear_light(value[:3]), value[3])))
         elif name == "_MainTex_ST":
             sx, sy, ox, oy = value
             shifts.append((material, (sx, sy), (ox, 1.0 - oy - sy)))

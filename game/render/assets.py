@@ -29,6 +29,7 @@ from game.render.model import (
 )
 from game.render.mood import MARKET_MOOD, Mood
 from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
+from game.render.weave import MOTIFS
 
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
 
@@ -42,13 +43,15 @@ def load_character(vrm: Path) -> CharacterModel:
     """
     meshes = {}
     shadow: ShadowMesh | None = None
-    joint_count = 0
+    joint_count = head = 0
     for path in (vrm, vrm.with_suffix("").with_suffix(".lod.glb")):
         file = read_gltf(path)
         if not file.skins:
             raise BadInput("character", where=Where(path), expected="a skin", seen="none")
         joint_count = len(file.skins[0].joints)
-        legs = [i for i, node in enumerate(file.skins[0].joints) if _LEG.search(file.nodes[node].name)]
+        names = [file.nodes[node].name for node in file.skins[0].joints]
+        head = names.index("head") if "head" in names else 0
+        legs = [i for i, name in enumerate(names) if _LEG.search(name)]
         for node, extras in _mesh_nodes(file):
             primitives = _primitives(file, node)
             if extras.get("shadow"):
@@ -59,7 +62,7 @@ def load_character(vrm: Path) -> CharacterModel:
     if shadow is None or not meshes:
         missing = "a mesh" if not meshes else "a node with extras.shadow in its .lod.glb"
         raise BadInput("character", where=Where(vrm), expected=missing, seen="none")
-    return CharacterModel(vrm.stem, meshes, shadow, joint_count)
+    return CharacterModel(vrm.stem, meshes, shadow, joint_count, head)
 
 
 def character_parts(vrm: Path) -> list[Part]:
@@ -145,6 +148,20 @@ def _material(file: GltfFile, primitive: GltfPrimitive) -> Material:
     return Material(material.name, extras["class"], *colours)
 
 
+def _weave(file: GltfFile, primitive: GltfPrimitive) -> tuple[float, float] | None:
+    """Number and strength of a material's motif; None for a plain one, or one of which nothing is known here."""
+    assert primitive.material is not None
+    extras = file.materials[primitive.material].extras
+    weave = extras.get("weave") if isinstance(extras, Mapping) else None
+    if not isinstance(weave, Mapping) or weave.get("motif") not in MOTIFS:
+        return None
+    strength = weave.get("strength")
+    return (
+        float(list(MOTIFS).index(weave["motif"])),
+        float(strength) if isinstance(strength, int | float) else 0.0,
+    )
+
+
 def _floats(array: NDArray[Any]) -> NDArray[np.float32]:
     return np.ascontiguousarray(array, dtype=np.float32)
 
@@ -160,6 +177,10 @@ def _part(file: GltfFile, primitive: GltfPrimitive, group: str) -> Part:
         extra = np.hstack([_floats(attributes["TEXCOORD_0"]), _floats(attributes["_FACE"])])
     elif material.kind == "hair" and "_HAIR" in attributes:
         extra[:, :2] = attributes["_HAIR"]
+    weave = _weave(file, primitive)
+    if weave is not None and "TEXCOORD_0" in attributes:
+        extra[:, :2], extra[:, 2:] = attributes["TEXCOORD_0"], weave
+        material = replace(material, kind="woven")
     skinned = "JOINTS_0" in attributes
     return Part(
         group,

@@ -18,6 +18,7 @@ from game.render.model import MAX_JOINTS
 __all__ = ["AvatarDrawing"]
 
 _MARGIN_PX = 12
+_SRGB8_ALPHA8 = 0x8C43  # GL decodes each texel before it filters
 _STILL = 1e-4  # morph weights that moved less are not drawn again
 
 
@@ -252,10 +253,8 @@ class AvatarDrawing(Owner):
         }
 
     def _colour(self, run: AvatarRun, what: str, own: tuple[float, ...]) -> tuple[float, ...]:
-        """Display-referred factors; alpha as it is."""
-        linear = self._look.colours.get((run.material, what), own)
-        shown = tuple(max(v, 0.0) ** (1.0 / 2.2) for v in linear[:3])
-        return (*shown, *linear[3:4])
+        """Linear factors."""
+        return self._look.colours.get((run.material, what), own)
 
 
 def _fill_key(material: ToonMaterial) -> tuple[bool, str]:
@@ -264,7 +263,7 @@ def _fill_key(material: ToonMaterial) -> tuple[bool, str]:
 
 def _upload(device: Device, picture: NDArray[np.uint8], texture: ToonTexture) -> moderngl.Texture:
     height, width = picture.shape[:2]
-    made = device.context.texture((width, height), 4, picture.tobytes())
+    made = device.context.texture((width, height), 4, picture.tobytes(), internal_format=_SRGB8_ALPHA8)
     if texture.nearest:
         made.filter = (moderngl.LINEAR, moderngl.NEAREST)
     else:

@@ -6,16 +6,19 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from game.face import DEFAULT_STYLE
 from game.render.device import PREMULTIPLIED, Device, Owner, layout, set_uniforms
+from game.render.face_planes import face_planes
 from game.render.levels import Level
 from game.render.model import MAX_JOINTS, CharacterMesh, CharacterModel, Run, ShadowMesh
 from game.render.silhouette import Edges, SilhouetteFinder
+from game.render.weave import weave_tiles
 
 __all__ = ["CharacterDrawing"]
 
 _Draw = tuple[moderngl.VertexArray, int, int]  # what to draw with: first corner, number of corners
 
-_CLASSES = {"hair": "HAIR", "face": "FACE", "skin": "SKIN", "gloss": "GLOSS", "cloth": "", "flat": ""}
+_CLASSES = {"hair": "HAIR", "face": "FACE", "skin": "SKIN", "gloss": "GLOSS", "woven": "WOVEN", "cloth": "", "flat": ""}
 _MARGIN_PX = 6  # outline, feather and rounding outside the mesh's own box
 
 
@@ -48,6 +51,7 @@ class CharacterDrawing(Owner):
         self._whole = True
         self._make_skinning(device, mesh)
         self._make_drawing(device, mesh, level, lamps)
+        self._make_surfaces(device, model, level)
         self._make_outline(device, mesh)
         self._make_over(device, mesh)
         self.shadow_map: moderngl.Texture | None = None
@@ -79,8 +83,10 @@ class CharacterDrawing(Owner):
         self._extra = self._buffer(mesh.extra)
         self._index = self.own(device.context.buffer(np.ascontiguousarray(mesh.triangle), dynamic=True))
         self._draws: list[tuple[moderngl.VertexArray, Run]] = []
+        self._faces: list[moderngl.Program] = []
         for run in mesh.runs:
-            flags = {name: int(_CLASSES[run.kind] == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS")}
+            kind = _CLASSES[run.kind] if level.weaves or run.kind != "woven" else ""
+            flags = {name: int(kind == name) for name in ("SKIN", "FACE", "HAIR", "GLOSS", "WOVEN")}
             flags["LAMP"] = int(lamps)
             program = self.own(
                 device.program(
@@ -89,7 +95,9 @@ class CharacterDrawing(Owner):
                     defines={**flags, "TAPS": level.shadow_taps, "SHADOW_SIZE": level.shadow_size},
                 )
             )
-            set_uniforms(program, shadow_map=1, face_texture=2)
+            set_uniforms(program, shadow_map=1, face_texture=2, weaves=7, planes=8)
+            if run.kind == "face":
+                self._faces.append(program)
             array = self.own(
                 device.vertex_array(
                     program,
@@ -104,6 +112,21 @@ class CharacterDrawing(Owner):
                 )
             )
             self._draws.append((array, run))
+
+    def _make_surfaces(self, device: Device, model: CharacterModel, level: Level) -> None:
+        """What the shaders look up: the face's planes, the motifs of patterned cloth."""
+        self._head = model.head
+        self._planes: moderngl.Texture | None = None
+        self._weaves: moderngl.TextureArray | None = None
+        if self._faces:
+            planes = face_planes(DEFAULT_STYLE) if model.planes is None else model.planes
+            self._planes = self.own(device.context.texture(planes.shape[::-1], 1, planes.tobytes(), alignment=1))
+            self._planes.repeat_x = self._planes.repeat_y = False
+        if level.weaves and any(run.kind == "woven" for run in self._mesh.runs):
+            tiles = weave_tiles()
+            self._weaves = self.own(
+                device.context.texture_array((*tiles.shape[:0:-1], len(tiles)), 1, tiles.tobytes(), alignment=1)
+            )
 
     def _make_outline(self, device: Device, mesh: CharacterMesh) -> None:
         clip, _, _, line = self._captured
@@ -181,6 +204,8 @@ class CharacterDrawing(Owner):
         rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
         self._joints.write(rows)
         self._joints.bind_to_uniform_block(1)
+        for program in self._faces:
+            set_uniforms(program, head_left=skin_matrices[self._head, :3, 0])
         self._nowhere.use()
         count = len(self._mesh.position) if whole else self._mesh.above.vertices
         self._skinning.transform(self._captured, moderngl.POINTS, vertices=count)
@@ -220,6 +245,10 @@ class CharacterDrawing(Owner):
             self.shadow_map.use(1)
         if face is not None:
             face.use(2)
+        if self._planes is not None:
+            self._planes.use(8)
+        if self._weaves is not None:
+            self._weaves.use(7)
         runs = [(array, run.first, run.count) for array, run in self._draws if self._whole or run.group == "above"]
         corners = 4 * (len(self._mesh.edges.adjacency) if self._whole else self._mesh.above.edges)
         if self._finders is not None:

@@ -24,11 +24,12 @@ class Level:
     face_size: int
     people: int  # passers-by
     clouds: bool  # whether they drift
+    weaves: bool = True  # whether clothes show their patterns
     line_px: float = 1.7  # outline width in a picture 720 pixels high
 
 
 LEVELS: tuple[Level, ...] = (
-    Level("low", 0, 15_000, 512, 1, 2, 512, 0, False),
+    Level("low", 0, 15_000, 512, 1, 2, 512, 0, False, weaves=False),
     Level("medium", 0, 25_000, 512, 1, 2, 512, 3, False),
     Level("default", 0, 40_000, 768, 2, 2, 512, 4, False),
     Level("high", 4, 25_000, 768, 1, 2, 512, 6, True),

@@ -37,7 +37,15 @@ __all__ = [
 ]
 
 Floats = NDArray[np.float32]
-KINDS = ("hair", "face", "skin", "cloth", "gloss", "flat")  # also the order of drawing: what covers most comes first
+KINDS = (
+    "hair",
+    "face",
+    "skin",
+    "cloth",
+    "woven",
+    "gloss",
+    "flat",
+)  # also the order of drawing: what covers most comes first
 MAX_JOINTS = 256  # three rows each of the Joints block in joints.glsl; 16 KB hold 341
 
 
@@ -64,7 +72,8 @@ class Part:
     triangle: NDArray[np.uint32]  # (t, 3), counter-clockwise in front
     joint: NDArray[np.uint8] | None = None  # (v, 4)
     weight: NDArray[np.uint8] | None = None  # (v, 4), each row sums to 255
-    extra: Floats | None = None  # (v, 4): face: uv, texture share, shadow fade; hair: azimuth, height term, 0, 0
+    # (v, 4): face: uv, texture share, shadow fade; hair: azimuth, height term, 0, 0; woven: tiles, motif, strength
+    extra: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -119,12 +128,15 @@ class ShadowMesh:
 
 @dataclass(frozen=True)
 class CharacterModel:
-    """All levels of detail of one person; triangles wanted -> mesh."""
+    """All levels of detail of one person; triangles wanted -> mesh. head: the joint of the face; planes: where its
+    light ends (face_planes), None for the standard face's."""
 
     name: str
     meshes: Mapping[int, CharacterMesh]
     shadow: ShadowMesh | None  # None casts no shadow
     joint_count: int
+    head: int = 0
+    planes: NDArray[np.uint8] | None = None
 
     def mesh(self, triangles: int) -> CharacterMesh:
         """The finest mesh of at most ``triangles``, else the coarsest there is."""

@@ -25,7 +25,7 @@ def test_mtoon_of_0x_becomes_that_of_1_0(shared_data: Path):
     low, high = -0.45, 1.0 + (-0.45 - 1.0) * 0.8
     assert face.shift == pytest.approx(-0.5 * (low + high))
     assert face.toony == pytest.approx(0.5 * (2.0 - (high - low)))
-    assert face.shade == pytest.approx([v**2.2 for v in (0.827, 0.73595411, 0.85)])
+    assert face.shade == pytest.approx([((v + 0.055) / 1.055) ** 2.4 for v in (0.827, 0.73595411, 0.85)])
     assert face.outline_mode == "screen"
     assert face.outline_width == pytest.approx(0.0025)
     assert face.lit_texture is not None

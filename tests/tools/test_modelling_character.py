@@ -86,12 +86,13 @@ def test_it_is_a_vrm_with_the_humanoid_skeleton_in_t_pose(name, vrm, character):
         np.testing.assert_allclose(places, REFERENCE.rest_model[:, :3, 3], atol=1e-9)
 
 
-def test_meta_expressions_and_look_at_are_declared(vrm):
+def test_meta_expressions_and_look_at_are_declared(vrm, character):
     assert vrm.authors
     assert vrm.meta["licenseUrl"] == "https://vrm.dev/licenses/1.0/"
     assert set(EXPRESSIONS) == set(vrm.expressions)
     assert all(len(vrm.expressions[name].shifts) == 1 for name in EXPRESSIONS)
-    assert [image.mime_type for image in vrm.gltf.images] == ["image/png"]
+    # The faces, and a tile of every pattern.
+    assert [image.mime_type for image in vrm.gltf.images] == ["image/png"] * (1 + len(character.spec.weaves))
     assert vrm.look_at is not None
 
 

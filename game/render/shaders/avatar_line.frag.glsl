@@ -1,5 +1,6 @@
 #include "frame.glsl"
 #include "grade.glsl"
+#include "srgb.glsl"
 #needs CUT
 in vec2 v_uv;
 in vec4 v_tint;
@@ -14,5 +15,5 @@ void main() {
 #if CUT
     if (texel.a < cutoff) discard;
 #endif
-    colour = vec4(grade(min(ink * tint_deep.rgb * mix(vec3(1.0), texel.rgb, ink_lit), vec3(1.0))), 1.0);
+    colour = vec4(grade(encoded(ink * mix(vec3(1.0), texel.rgb, ink_lit)) * min(tint_deep.rgb, vec3(1.0))), 1.0);
 }

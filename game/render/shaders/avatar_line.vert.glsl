@@ -17,5 +17,5 @@ void main() {
     gl_Position = vec4(clip.xy + line.xy * (2.0 * pixels * clip.w) / viewport.xy, clip.z + 0.0004 * clip.w, clip.w);
     vec2 t = uv * place.zw;
     v_uv = vec2(t.x * spin.x + t.y * spin.y, t.y * spin.x - t.x * spin.y) + place.xy;
-    v_tint = tint;
+    v_tint = vec4(pow(tint.rgb, vec3(2.2)), tint.a);  // vertex colours are stored as bytes of the power 1/2.2
 }

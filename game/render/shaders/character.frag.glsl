@@ -1,16 +1,19 @@
 // One program per material class: branches on a flag would cost all sides of it on a software rasteriser.
 #include "toon.glsl"
-#needs SKIN FACE HAIR GLOSS LAMP
+#include "woven.glsl"
+#needs SKIN FACE HAIR GLOSS LAMP WOVEN
 in vec4 v_terms;
 in vec4 v_shadow;
 flat in vec3 v_lit;
 flat in vec3 v_shade;
 flat in vec3 v_deep;
-#if FACE || HAIR || LAMP
+#if FACE || HAIR || LAMP || WOVEN
 in vec4 v_extra;
 #endif
 #if FACE
 uniform sampler2D face_texture;
+uniform sampler2D planes;   // where the light ends on the face, for light from the right
+uniform vec3 head_left;     // unit vector to the person's left
 #endif
 out vec4 colour;
 void main() {
@@ -18,9 +21,15 @@ void main() {
     float sun = sunlight(v_shadow.xyz);
 #if FACE
     sun = mix(sun, 1.0, v_extra.w);
+    float side = dot(light.xyz, head_left);
+    float plane = texture(planes, vec2(side > 0.0 ? 1.0 - v_extra.x : v_extra.x, v_extra.y)).r - 128.0 / 255.0;
+    h += plane * v_extra.z * sat(abs(side) * 3.0 - 0.1);
 #endif
     float lit_share;
     vec3 c = three_tones(v_lit, v_shade, v_deep, h, sun, v_terms.w, FACE == 1 ? 0.030 : 0.018, lit_share);
+#if WOVEN
+    c = woven(c, v_extra);
+#endif
 #if SKIN || FACE
     c = skin_terminator(c, h, sun);
 #endif

@@ -32,7 +32,7 @@ from game.tools.modelling.rig import Chain
 from game.tools.modelling.spec import SpringSpec
 from game.tools.modelling.spec_wear import CoatSpec
 from game.tools.modelling.surface import Sculpt
-from game.tools.modelling.trims import lapel_line
+from game.tools.modelling.trims import disc_on, lapel_line, on_front
 from game.tools.modelling.weights import Binder, SleeveFit
 
 __all__ = ["Clothes"]
@@ -254,7 +254,7 @@ class Clothes:
         return replace(hem, normal=unit(hem.normal * (1 - 0.85 * outside) + out * (0.85 * outside)))
 
     def _crest(self, binder: Binder, detail: Detail) -> list[Part]:
-        """A ring and a four-petalled flower on the back, laid a millimetre and a half over the cloth."""
+        """A ring and a four-petalled flower on the back, and small on the breast, 1.6 mm over the cloth."""
         size, centre_y = self.spec.crest_radius, 0.800
         turns = detail.sides(56, 24)
 
@@ -283,10 +283,23 @@ class Clothes:
         def heart(angle: Floats) -> tuple[Floats, Floats]:
             return np.zeros_like(angle), np.full_like(angle, 0.13 * size)
 
+        at, _ = on_front(self._coat_closed, [0.092], [0.872], 0.0)
+        share = 0.36
+
+        def small(figure: Callable[[Floats], tuple[Floats, Floats]], name: str, material: str) -> Part:
+            def shrunk(angle: Floats) -> tuple[Floats, Floats]:
+                inner, outer = figure(angle)
+                return share * inner, share * outer
+
+            mesh = disc_on(self._coat_closed, at[0], shrunk, detail, 0.0016)
+            return _part(name, material, mesh, binder.coat, 0.0, True)
+
         return [
             laid(outline, "crest_ring", "cream"),
             laid(petals, "crest_flower", "cream"),
             laid(heart, "crest_heart", "apron"),
+            small(outline, "breast_ring", "cream"),
+            small(petals, "breast_flower", "cream"),
         ]
 
     def _lapel_parts(self, binder: Binder, detail: Detail) -> list[Part]:

@@ -20,8 +20,10 @@ from game.tools.modelling.gltf import Gltf, material_json, unit_normals
 from game.tools.modelling.hair import Hair
 from game.tools.modelling.mesh import Mesh, joined
 from game.tools.modelling.parts import Detail, Part
-from game.tools.modelling.spec import load_character
-from game.tools.modelling.vrm import add_face_pictures, add_skeleton, humanoid_extension, spring_extension
+from game.tools.modelling.spec import CharacterSpec, load_character
+from game.tools.modelling.vrm import add_face_pictures, add_skeleton, humanoid_extension, spring_extension, use_picture
+from game.tools.modelling.weave_spec import Weave
+from game.tools.modelling.weaving import cut, tile_picture
 
 __all__ = ["LEVELS", "build_character"]
 
@@ -85,12 +87,32 @@ def _write_levels(gltf: Gltf, character: Character, levels: Sequence[int], *, to
             for material in dict.fromkeys(part.material for part in parts):
                 if material not in material_of:
                     material_of[material] = len(gltf.materials)
-                    gltf.materials.append(material_json(material, character.spec.palette[material], toon=toon))
+                    gltf.materials.append(_material(gltf, character.spec, material, toon=toon))
                 primitive = _primitive(gltf, character, [part for part in parts if part.material == material])
                 primitives.append(primitive | {"material": material_of[material]})
         gltf.meshes.append({"name": name, "primitives": primitives})
         scene.append(gltf.node(name=name, mesh=len(gltf.meshes) - 1, skin=0, extras=extras))
     gltf.root["scenes"] = [{"name": character.spec.id, "nodes": scene}]
+
+
+def _material(gltf: Gltf, spec: CharacterSpec, name: str, *, toon: bool) -> dict[str, Any]:
+    """A material; a patterned one says its motif in ``extras.weave`` and, for other programs, has it as a texture."""
+    swatch = spec.palette[name]
+    material = material_json(name, swatch, toon=toon)
+    weave = spec.weaves.get(name)
+    if weave is not None:
+        material["extras"]["weave"] = {"motif": weave.motif, "strength": weave.strength}
+        if toon:
+            use_picture(material, gltf.picture(tile_picture(weave, swatch.lit), f"weave_{name}", repeat=True))
+    return material
+
+
+def _woven_attributes(
+    character: Character, parts: Sequence[Part], weave: Weave
+) -> tuple[list[Part], dict[str, Floats]]:
+    """Cloth with vertices doubled along its seams, and where each lies on the cloth, in tiles."""
+    pieces = [cut(part, weave, character.rig, character.anatomy.arm) for part in parts]
+    return [part for part, _ in pieces], {"TEXCOORD_0": np.vstack([uv for _, uv in pieces])}
 
 
 def _parts_of_level(character: Character, level: int) -> list[Part]:
@@ -107,10 +129,13 @@ def _parts_of_level(character: Character, level: int) -> list[Part]:
 
 def _primitive(gltf: Gltf, character: Character, parts: Sequence[Part]) -> dict[str, Any]:
     """One material's parts as a primitive with all vertex attributes of its shading class."""
-    kind = character.spec.palette[parts[0].material].kind
+    material = parts[0].material
+    kind = character.spec.palette[material].kind
     extra: dict[str, Floats] = {}
     if kind == "face":
         parts, extra = _face_attributes(character, parts)
+    elif material in character.spec.weaves:
+        parts, extra = _woven_attributes(character, parts, character.spec.weaves[material])
     elif kind == "hair":
         extra = {"_HAIR": np.vstack([_hair_terms(character.hair, part.mesh) for part in parts])}
     everything = np.vstack([_weights_of(part) for part in parts])

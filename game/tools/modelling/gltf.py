@@ -64,14 +64,18 @@ class Gltf:
         kind = np.uint16 if vertex_count < 65535 else np.uint32
         return self.accessor(triangle.astype(kind).ravel(), target=_INDICES)
 
-    def picture(self, png: bytes, name: str) -> int:
-        """Append an embedded PNG with a clamped linear sampler; -> its texture index."""
+    def picture(self, png: bytes, name: str, *, repeat: bool = False) -> int:
+        """Append an embedded PNG, clamped at its edges or repeated; -> its texture index."""
         self._views.append({"buffer": 0, "byteOffset": len(self._blob), "byteLength": len(png)})
         self._blob += png + b"\0" * (-len(png) % 4)
         images, textures = self.root.setdefault("images", []), self.root.setdefault("textures", [])
-        self.root["samplers"] = [{"magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071}]
+        wrap, smaller = (10497, 9987) if repeat else (33071, 9729)
+        sampler = {"magFilter": 9729, "minFilter": smaller, "wrapS": wrap, "wrapT": wrap}
+        samplers = self.root.setdefault("samplers", [])
+        if sampler not in samplers:
+            samplers.append(sampler)
         images.append({"name": name, "mimeType": "image/png", "bufferView": len(self._views) - 1})
-        textures.append({"source": len(images) - 1, "sampler": 0})
+        textures.append({"source": len(images) - 1, "sampler": samplers.index(sampler)})
         return len(textures) - 1
 
     def node(self, **content: Any) -> int:

@@ -15,7 +15,7 @@ from game.tools.modelling.rig import Chain
 from game.tools.modelling.spec import SpringSpec
 from game.tools.modelling.spec_wear import HaoriSpec
 from game.tools.modelling.surface import Sculpt
-from game.tools.modelling.trims import disc_on, knob, laid_line, lapel_line, on_front, part_of, patch_on
+from game.tools.modelling.trims import Weigh, disc_on, knob, laid_line, lapel_line, on_front, part_of, patch_on
 from game.tools.modelling.weights import Binder, SleeveFit
 
 __all__ = ["Haori"]
@@ -141,7 +141,7 @@ class Haori:
         folds = 0.0018 * np.sin((t - arm.upper_m) * 120 + 1.1 * np.sin(arm.angle_around(p)))
         d = self._under_tube(0.0)(p) + folds * np.exp(-(((t - wrist + 0.07) / 0.06) ** 2))
         # It begins well inside the haori: at the shoulder it would show through the cloth of a lowered arm.
-        return smooth_max(smooth_max(d, 0.125 - t, 0.01), t - wrist + 0.022, 0.006)
+        return smooth_max(smooth_max(d, 0.185 - t, 0.01), t - wrist + 0.022, 0.006)
 
     def _cuff_field(self, p: Floats) -> Floats:
         t = self.anatomy.arm.distance_along(p)
@@ -214,17 +214,26 @@ class Haori:
             part_of("haori", "haori", upper, weigh, 1.1),
         ]
         if detail.trims:
-            size, centre = self.spec.crest_radius, np.array([0.0, 0.832, -0.14])
+            # As on a formal haori: the house's crest on the back, and small ones on the breast.
+            parts += self._crest(np.array([0.0, 0.832, -0.14]), self.spec.crest_radius, detail, weigh)
+            for sign in (1.0, -1.0):
+                at, _ = on_front(self._closed, [0.099 * sign], [0.908], 0.0)
+                parts += self._crest(at[0], 0.40 * self.spec.crest_radius, detail, weigh)
+        return parts
 
-            def ring(angle: Floats) -> tuple[Floats, Floats]:
-                return np.full_like(angle, 0.86 * size), np.full_like(angle, size)
+    def _crest(self, centre: Floats, size: float, detail: Detail, weigh: Weigh) -> list[Part]:
+        """A ring around three leaves."""
 
-            def leaves(angle: Floats) -> tuple[Floats, Floats]:
-                return np.zeros_like(angle), size * (0.20 + 0.50 * np.abs(np.cos(1.5 * (angle - np.pi / 2))) ** 0.8)
+        def ring(angle: Floats) -> tuple[Floats, Floats]:
+            return np.full_like(angle, 0.86 * size), np.full_like(angle, size)
 
-            for name, figure in (("crest_ring", ring), ("crest_leaves", leaves)):
-                mesh = disc_on(self._closed, centre, figure, detail, 0.0016)
-                parts.append(part_of(name, "ivory", mesh, weigh, 0.0, True))
+        def leaves(angle: Floats) -> tuple[Floats, Floats]:
+            return np.zeros_like(angle), size * (0.20 + 0.50 * np.abs(np.cos(1.5 * (angle - np.pi / 2))) ** 0.8)
+
+        parts = []
+        for name, figure in (("crest_ring", ring), ("crest_leaves", leaves)):
+            mesh = disc_on(self._closed, centre, figure, detail, 0.0016)
+            parts.append(part_of(name, "ivory", mesh, weigh, 0.0, True))
         return parts
 
     def _collar_parts(self, binder: Binder, detail: Detail) -> list[Part]:
@@ -327,9 +336,9 @@ class Haori:
         """The ivory square in the haori's breast pocket: three folded corners over a welt."""
         parts: list[Part] = []
         for corners in (
-            ((0.088, 0.846), (0.106, 0.845), (0.101, 0.874), (0.094, 0.879)),
-            ((0.098, 0.845), (0.117, 0.843), (0.114, 0.868), (0.106, 0.881)),
-            ((0.108, 0.844), (0.126, 0.842), (0.128, 0.862), (0.120, 0.871)),
+            ((0.086, 0.844), (0.112, 0.843), (0.101, 0.868), (0.091, 0.884)),
+            ((0.094, 0.843), (0.123, 0.842), (0.113, 0.872), (0.104, 0.894)),
+            ((0.106, 0.842), (0.129, 0.841), (0.128, 0.866), (0.119, 0.883)),
         ):
             x, y = np.array(corners).T
             rough, _ = on_front(self._closed, x, y, 0.0)

@@ -17,6 +17,7 @@ from game.tools.modelling.proportions import Proportions
 from game.tools.modelling.records import Vector, record
 from game.tools.modelling.spec_hair import CurlSpec, HairSpec, TuftSpec, read_hair
 from game.tools.modelling.spec_wear import CLOTHES, BandSpec, CapSpec, ClothesSpec, LegSpec, SpectaclesSpec
+from game.tools.modelling.weave_spec import Weave, read_weaves
 
 __all__ = [
     "BodySpec",
@@ -35,7 +36,7 @@ __all__ = [
 Part = TypeVar("Part")
 _SECTIONS = (
     *("id", "name", "authors", "palette", "face", "proportions", "head", "body", "hand", "clothes", "legs", "hair"),
-    *("band", "cap", "spectacles", "springs"),
+    *("band", "cap", "spectacles", "springs", "weaves"),
 )
 
 
@@ -130,6 +131,7 @@ class CharacterSpec:
     cap: CapSpec | None
     spectacles: SpectaclesSpec | None
     springs: dict[str, SpringSpec] = field(repr=False)
+    weaves: dict[str, Weave] = field(default_factory=dict)
 
 
 def read_palette(node: Node) -> dict[str, Swatch]:
@@ -206,4 +208,5 @@ def load_character(path: Path) -> CharacterSpec:
         cap=_optional(node, "cap", CapSpec),
         spectacles=_optional(node, "spectacles", SpectaclesSpec),
         springs={name: record(springs[name], SpringSpec) for name in sorted(_swings(hair, clothes, band))},
+        weaves=read_weaves(node.get("weaves"), palette),
     )

@@ -13,7 +13,7 @@ from game.tools.modelling.proportions import Figure
 from game.tools.modelling.rig import Rig
 from game.tools.modelling.spec import CharacterSpec
 
-__all__ = ["add_face_pictures", "add_skeleton", "humanoid_extension", "spring_extension"]
+__all__ = ["add_face_pictures", "add_skeleton", "humanoid_extension", "spring_extension", "use_picture"]
 
 LICENSE_URL = "https://vrm.dev/licenses/1.0/"
 
@@ -59,14 +59,23 @@ def add_face_pictures(gltf: Gltf, material: dict[str, Any], spec: CharacterSpec)
     skin = material["extras"]["lit_srgb"]
     texture = gltf.picture(paint_atlas(skin, spec.face), "expressions")
     transform = {"offset": list(cell_of("neutral")), "scale": [1 / COLUMNS, 1 / ROWS]}
-    use = {"index": texture, "extensions": {"KHR_texture_transform": transform}}
+    use_picture(material, texture, transform)
+
+
+def use_picture(material: dict[str, Any], texture: int, transform: dict[str, Any] | None = None) -> None:
+    """Show a picture that already holds the material's lit colour, on its lit and on its shaded side."""
+    use: dict[str, Any] = {"index": texture}
+    if transform is not None:
+        use["extensions"] = {"KHR_texture_transform": transform}
     material["pbrMetallicRoughness"]["baseColorTexture"] = use
     material["pbrMetallicRoughness"]["baseColorFactor"] = [1.0, 1.0, 1.0, 1.0]
     toon = material["extensions"]["VRMC_materials_mtoon"]
     toon["shadeMultiplyTexture"] = use
-    # The picture already holds the lit skin colour: the factor is what remains from there to the shade.
+    # The factor is what remains from the lit colour to the shade.
+    lit_srgb = material["extras"]["lit_srgb"]
     toon["shadeColorFactor"] = [
-        round(min(shade / lit, 1.0), 6) for shade, lit in zip(toon["shadeColorFactor"], linear_rgb(skin), strict=True)
+        round(min(shade / lit, 1.0), 6)
+        for shade, lit in zip(toon["shadeColorFactor"], linear_rgb(lit_srgb), strict=True)
     ]
 
 
