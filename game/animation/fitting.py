@@ -65,6 +65,8 @@ _TOGETHER_M, _APART_M = 0.14, 0.34
 """Palms nearer than the first keep their distance, further apart than the second each goes its own way."""
 _REACH_SOFT, _REACH_FULL = 0.985, 0.999
 """Shares of an arm's length between which a reach is clamped that only this body lacks."""
+_CLEAR = 1.35
+"""Radii of a body's part beyond which a palm is out of it."""
 _SAME_M = 1e-6
 
 
@@ -161,6 +163,7 @@ class Fitting:
         here, there = reference[..., :3, 3].take(_AT, axis=1), mine[..., :3, 3].take(_AT, axis=1)
         here[:, 5] = there[:, 5] = _TABLE
         local = ((palm[:, None] - here) @ turn - self.centre[0]) / self.radius[0]
+        origin = there[:, :3].copy()
         there += (local * self.radius[1] + self.centre[1]) @ turn.swapaxes(-1, -2)
         way = palm[:, 1] - palm[:, 0]
         nearness = np.empty((n, 10, 2), dtype=np.float32)
@@ -181,6 +184,15 @@ class Fitting:
         weight[:, 4] = away[:, 0] * away[:, 1] * away[:, 2] * away[:, 3] * away[:, 5]
         share = weight.swapaxes(1, 2)[:, :, None]
         found = np.asarray((share @ there.swapaxes(1, 2))[:, :, 0] / (share @ _ONES)[:, :, 0])
+        # Between two places, and on the way to one, a palm is no deeper in this body than in the reference's.
+        inside = ((found[:, None] - origin) @ turn[:, :3] - self.centre[1, :3]) / self.radius[1, :3]
+        deep = np.sqrt((inside * inside) @ _SUM)
+        wanted = np.minimum(np.sqrt((local[:, :3] * local[:, :3]) @ _SUM), np.float32(_CLEAR))
+        lack = np.maximum(wanted / np.maximum(deep, np.float32(1e-3)) - np.float32(1.0), np.float32(0.0))
+        lack *= wanted > np.float32(0.4)
+        most = lack.argmax(axis=1)[:, None]
+        out = (inside * lack[..., None] * self.radius[1, :3]) @ turn[:, :3].swapaxes(-1, -2)
+        found += np.take_along_axis(out, most[..., None], axis=1)[:, 0]
         # Hands that hold each other.
         fix = np.float32(0.5) * nearness[:, 7, :1] * (np.float32(self.hand) * way - (found[:, 1] - found[:, 0]))
         found[:, 0] -= fix

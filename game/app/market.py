@@ -18,12 +18,13 @@ from game.app.wishes import PLAIN_WISH, WishText, load_wishes
 from game.core.errors import BadInput, GameError, Where
 from game.core.paths import ASSETS
 from game.embos import check_habit
+from game.render import CharacterModel
 from game.story import Script
 
 if TYPE_CHECKING:
     from game.app.avatar import Avatar
 
-__all__ = ["LeftOut", "Market", "Stall", "StallLoader", "has_pictures", "read_stage", "read_stall"]
+__all__ = ["LeftOut", "Market", "Stall", "StallLoader", "has_pictures", "read_stage", "read_stall", "stall_of"]
 
 
 @dataclass
@@ -113,7 +114,11 @@ def has_pictures(person: str, stall: str, folder: Path = ASSETS) -> bool:
 
 def read_stall(name: str, base: StepAssets, *, stand_in: bool = False) -> Stall:
     """A stall's dialogue on the given body. Raises BadInput for a script with errors or missing pictures."""
-    talk = load_talk_assets(stall_path(name))
+    return stall_of(load_talk_assets(stall_path(name)), base, stand_in=stand_in)
+
+
+def stall_of(talk: TalkAssets, base: StepAssets, *, stand_in: bool = False) -> Stall:
+    """The stall of a dialogue that has been read. Raises BadInput for unknown habits or missing pictures."""
     check_habit(base.planner.library, talk.person.habit_units, talk.person.id)
     stall, person = talk.script.stall, talk.script.person.id
     pictured = has_pictures(person, stall)
@@ -163,7 +168,10 @@ class StallLoader:
         self._scripts_read.set()
         for stall in found:
             try:
-                self._ready.put(_News(stall.id, stage=read_stage(stall, self._market.avatar)))
+                stage = read_stage(stall, self._market.avatar)
+                if isinstance(stage.model, CharacterModel):
+                    stage.model.make_all()  # here, not in the frame in which the player walks up
+                self._ready.put(_News(stall.id, stage=stage))
             except (GameError, OSError) as error:
                 self._ready.put(_News(stall.id, why=LeftOut.of(stall.id, error)))
 

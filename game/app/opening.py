@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from game.app.afternoon import Afternoon
 from game.app.bazaar import load_bazaar
 from game.app.loading import load_step_assets
-from game.app.market import Market, Stall, StallLoader, read_stall
+from game.app.market import Market, Stall, StallLoader, stall_of
 from game.app.reading import load_read
 from game.app.save_reader import read_json
 from game.app.saves import read_game
@@ -44,7 +44,7 @@ def open_session(args: argparse.Namespace, avatar: Avatar | None = None) -> Sess
     first = args.stall or bazaar.stalls[0]
     assets = load_step_assets(first)
     # A designer's own stall may be played before there are pictures of it.
-    stall = Stall("", assets) if args.stall is None else read_stall(first, assets, stand_in=True)
+    stall = Stall("", assets) if args.stall is None else stall_of(assets.talk, assets, stand_in=True)
     stall.id = assets.talk.script.stall
     others = () if args.stall else bazaar.stalls[1:]
     market = Market(bazaar, {stall.id: stall}, expected=(stall.id, *others), avatar=avatar)

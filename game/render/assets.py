@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +19,13 @@ from game.core.errors import BadInput, Where
 from game.formats import GltfFile, GltfMaterial, GltfNode, GltfPrimitive, read_gltf
 from game.render.model import (
     KINDS,
+    CharacterMesh,
     CharacterModel,
     Material,
     Part,
     ShadowMesh,
     StaticMesh,
+    WhenAsked,
     merge_character,
     merge_static,
     on_legs,
@@ -39,9 +42,11 @@ __all__ = ["character_parts", "load_character", "load_picture", "load_stall", "s
 def load_character(vrm: Path) -> CharacterModel:
     """Read ``<id>.vrm`` and, beside it, ``<id>.lod.glb`` with the coarser meshes and the shadow mesh.
 
+    A level of detail is put together when it is first asked for: a game draws one of them.
+
     Raises BadInput where a file is unreadable, or lacks what the renderer needs.
     """
-    meshes = {}
+    makers: dict[int, Callable[[], CharacterMesh]] = {}
     shadow: ShadowMesh | None = None
     joint_count = head = 0
     for path in (vrm, vrm.with_suffix("").with_suffix(".lod.glb")):
@@ -58,11 +63,11 @@ def load_character(vrm: Path) -> CharacterModel:
                 shadow = _shadow_mesh(primitives[0], legs)
             else:
                 parts = [_part(file, primitive, "body") for primitive in primitives]
-                meshes[int(extras.get("lod", 40_000))] = merge_character(parts, joint_count, legs)
-    if shadow is None or not meshes:
-        missing = "a mesh" if not meshes else "a node with extras.shadow in its .lod.glb"
+                makers[int(extras.get("lod", 40_000))] = partial(merge_character, parts, joint_count, legs)
+    if shadow is None or not makers:
+        missing = "a mesh" if not makers else "a node with extras.shadow in its .lod.glb"
         raise BadInput("character", where=Where(vrm), expected=missing, seen="none")
-    return CharacterModel(vrm.stem, meshes, shadow, joint_count, head)
+    return CharacterModel(vrm.stem, WhenAsked(makers), shadow, joint_count, head)
 
 
 def character_parts(vrm: Path) -> list[Part]:

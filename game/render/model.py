@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -29,6 +29,7 @@ __all__ = [
     "ShadowMesh",
     "Share",
     "StaticMesh",
+    "WhenAsked",
     "joint_boxes",
     "merge_character",
     "merge_static",
@@ -126,6 +127,25 @@ class ShadowMesh:
     above: int  # triangles before those of the legs
 
 
+class WhenAsked(Mapping[int, CharacterMesh]):
+    """Meshes by triangles, each put together the first time it is asked for."""
+
+    def __init__(self, makers: Mapping[int, Callable[[], CharacterMesh]]) -> None:
+        self._makers = dict(makers)
+        self._made: dict[int, CharacterMesh] = {}
+
+    def __getitem__(self, triangles: int) -> CharacterMesh:
+        if triangles not in self._made:
+            self._made[triangles] = self._makers[triangles]()
+        return self._made[triangles]
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self._makers)
+
+    def __len__(self) -> int:
+        return len(self._makers)
+
+
 @dataclass(frozen=True)
 class CharacterModel:
     """All levels of detail of one person; triangles wanted -> mesh. head: the joint of the face; planes: where its
@@ -142,6 +162,11 @@ class CharacterModel:
         """The finest mesh of at most ``triangles``, else the coarsest there is."""
         fitting = [n for n in self.meshes if n <= triangles]
         return self.meshes[max(fitting) if fitting else min(self.meshes)]
+
+    def make_all(self) -> None:
+        """Put every level of detail together now."""
+        for triangles in self.meshes:
+            self.meshes[triangles]
 
 
 @dataclass(frozen=True)

@@ -278,3 +278,28 @@ def test_a_hand_on_the_belly_goes_with_a_belly_that_leans_over_the_table():
     off = np.concatenate(seen)
     assert len(off) > 15
     assert off.min() > -0.12
+
+
+def test_no_palm_is_deeper_in_a_round_body_than_in_the_references():
+    """Also between two places and on the way to one: hands that sweep past the belly at every height and distance."""
+    round_body = BodySize(
+        {"chest": (1.2, 1.0, 1.4), "spine": (1.4, 1.0, 1.6), "hips": (1.2, 1.0, 1.2)}, {"spine": 0.02}
+    )
+    rng, n = np.random.default_rng(3), 1500
+    rotation = np.tile(quat.IDENTITY, (n, len(REFERENCE), 1)).astype(np.float32)
+    lowered = quat.from_axis_angle(np.array([0.0, 0.0, 1.0]), rng.uniform(-1.5, -0.6, n))
+    inward = quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), rng.uniform(-1.7, 0.2, n))
+    rotation[:, REFERENCE.index["leftUpperArm"]] = quat.multiply(inward, lowered)
+    folded = quat.from_axis_angle(np.array([0.0, 1.0, 0.0]), rng.uniform(-2.9, -1.2, n))
+    across = quat.from_axis_angle(np.array([1.0, 0.0, 0.0]), rng.uniform(-2.6, 0.6, n))
+    rotation[:, REFERENCE.index["leftLowerArm"]] = quat.multiply(across, folded)
+    root = np.tile(REST["hips"], (n, 1)).astype(np.float32)
+    pose = Pose(rotation, root, np.zeros((n, 2)), np.zeros(n), np.zeros(n))
+    norms = []
+    for size, radii, ahead in ((None, (0.135, 0.140, 0.112), 0.0), (round_body, (0.189, 0.140, 0.1792), 0.02)):
+        found = joints(rig_at(dict(REST), size=size), pose)
+        local = palms(found, "left") - found["spine"][:, :3, 3] - ((0.0, 0.680, ahead) - REST["spine"])
+        norms.append(np.linalg.norm(local / radii, axis=1))
+    near = (norms[0] > 0.6) & (norms[0] < 1.3)
+    assert near.sum() > 20
+    assert (norms[0] - norms[1])[near].max() < 0.02, "in radii of the belly: three millimetres"

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
+from typing import cast
 
 import numpy as np
 import pytest
@@ -8,7 +10,17 @@ import pytest
 from game.core import BadInput
 from game.render.camera import HERO, Camera, look_at
 from game.render.grading import grade
-from game.render.model import CharacterModel, Material, Part, StaticMesh, joint_boxes, merge_character, merge_static
+from game.render.model import (
+    CharacterMesh,
+    CharacterModel,
+    Material,
+    Part,
+    StaticMesh,
+    WhenAsked,
+    joint_boxes,
+    merge_character,
+    merge_static,
+)
 from game.render.silhouette import SilhouetteFinder, find_edges
 
 CLOTH = Material("coat", "cloth", (0.2, 0.4, 0.5), (0.1, 0.2, 0.4), (0.1, 0.1, 0.3))
@@ -148,3 +160,18 @@ def test_grading_keeps_black_and_white_and_order() -> None:
     assert grey[0] == pytest.approx(0, abs=1e-4)
     assert grey[-1] == pytest.approx(1, abs=1e-6)
     assert (np.diff(grey, axis=0) > 0).all()
+
+
+def test_a_level_of_detail_is_put_together_when_it_is_asked_for() -> None:
+    asked: list[int] = []
+
+    def make(triangles: int) -> CharacterMesh:
+        asked.append(triangles)
+        return cast(CharacterMesh, triangles)
+
+    model = CharacterModel("x", WhenAsked({n: partial(make, n) for n in (40_000, 25_000, 15_000)}), None, 1)
+    assert asked == []
+    assert model.mesh(30_000) == model.mesh(25_000) == 25_000
+    assert asked == [25_000], "and only once"
+    model.make_all()
+    assert sorted(asked) == [15_000, 25_000, 40_000]
