@@ -83,7 +83,7 @@ class Dialogs:
 
     def _findings(self, size: tuple[int, int]) -> None:
         k, findings = self.pen.k, self.actions.findings
-        self._middle(size, 900, min(150.0 + 44.0 * len(findings), 560.0))
+        self._middle(size, 900, min(150.0 + 30.0 * len(findings), 560.0))
         imgui.push_style_color(imgui.Col_.window_bg, colour("paper"))
         imgui.begin("findings", None, imgui.WindowFlags_.no_decoration | imgui.WindowFlags_.no_move)
         at = imgui.get_window_pos()
