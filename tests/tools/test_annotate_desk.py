@@ -374,3 +374,26 @@ def test_a_file_somebody_else_changed_meanwhile_is_kept_beside(take: Path, reper
     assert desk.save()
     assert "joy.yaml.before" in desk.message
     assert take.with_suffix(".yaml.before").read_text(encoding="utf-8") == theirs
+
+
+def test_a_try_that_fails_tells_all_that_is_wrong_and_one_without_emotion_what_to_do(tmp_path, repertoire) -> None:
+    pytest.importorskip("imgui_bundle")
+    from game.tools.annotate.desk_actions import Actions
+
+    desk = _desk(tmp_path, repertoire)
+    desk.create("posture", 0.0, 10.0)
+    actions = Actions(desk, MOTION / "behaviours.yaml", tmp_path)
+    actions.try_it()
+    assert (actions.job, desk.failed) == (None, True)
+    assert "which emotion" in desk.message
+    assert not desk.sheet.notes.exists(), "nothing is written before that is known"
+    desk.describe(emotion="joy")
+    actions.try_it()
+    while actions.job is not None:
+        actions.tick(0.05)
+    assert len(actions.findings) == 7, "six feelings without a take, and a motion that is not there"
+    assert any("t0.bvh" in line for line in actions.findings)
+    assert sum("expected a take of" in line for line in actions.findings) == 6
+    assert not (tmp_path.parent / "units.yaml").exists()
+    actions.let_go()
+    assert actions.findings == ()
