@@ -22,21 +22,28 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-BLEND_COST = 10.0
+BLEND_COST = 12.0
 """Of two feelings at once mouth and colour show the stronger, brows and eyes tell of the other: fear behind joy is a
 laugh under anxious brows. On two axes alone happy eyes over chattering teeth come to the same point. So much score may
 a mouth or a colour lose that says only the weaker."""
+_OUTRIGHT = 0.8
+"""A part that says the stronger feeling this share as well as the best one does costs nothing."""
+_LOUD = 3.0
+"""As much again for a part this share of the scale (1/3) louder than the stronger feeling is: half a joy smiles."""
 
 
-def _blend_cost(affinity: Floats, emotion: Floats) -> Floats:
-    """Cost (n,) of parts with affinities (n, 7) for an emotion (7,); 0 where one feeling stands alone."""
+def _blend_cost(affinity: Floats, mean: Floats, emotion: Floats) -> Floats:
+    """Cost (n,) of parts with affinities (n, 7) and means (n, 2) for an emotion (7,); 0 where one feeling is alone."""
     six = emotion[:6]
     together = float(six.sum())
     if together <= 0.0:
         return np.zeros(len(affinity))
-    mixed = (1.0 - float(six.max()) / together) * min(together, 1.0)
-    told = affinity @ emotion**3
-    return np.asarray(BLEND_COST * mixed * (1.0 - told / told.max()))
+    strongest = float(six.max())
+    mixed = (1.0 - strongest / together) * min(together, 1.0)
+    told = affinity @ (emotion / emotion.max()) ** 5  # little is left of the weaker one
+    loud = np.maximum(np.sqrt((mean * mean).sum(axis=1)) - 0.8 * strongest, 0.0)
+    weak = np.maximum(1.0 - told / (_OUTRIGHT * told.max()), 0.0)
+    return np.asarray(BLEND_COST * mixed * (weak + _LOUD * loud))
 
 
 @dataclass(frozen=True)
@@ -114,7 +121,7 @@ class FaceSearch:
             shape[axis] = -1
             gain = factor * (region.affinity @ values)
             if region.name in ("mouth", "skin"):
-                gain -= _blend_cost(region.affinity, values)
+                gain -= _blend_cost(region.affinity, region.mean, values)
             score = score + gain.reshape(shape)
         return score.reshape(-1)
 

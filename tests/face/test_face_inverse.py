@@ -86,6 +86,18 @@ def test_of_two_feelings_the_mouth_shows_the_stronger(asset):
             assert max(told["eyes"][weak], told["eyebrows"][weak]) > 0.3, (strong, weak, face)
 
 
+def test_half_a_feeling_beside_another_is_not_shown_at_full_voice(asset):
+    """A wistful smile: neither a roar of laughter nor a sob, though all in all much is felt."""
+    face = _best(asset, joy=0.47, sadness=0.39)
+    mouth = asset.model.parts.regions[2]
+    assert face.mouth in ("smile", "contented")
+    assert np.linalg.norm(mouth.mean[mouth.index(face.mouth)]) < 0.4
+    assert "worried" in face.eyebrows or face.eyes == "teary"
+    assert np.isfinite(asset.search.score_emotion([1e-80, 1e-80, 0, 0, 0, 0, 0])).all()
+    assert _best(asset, joy=0.9).mouth == "open_laugh"
+    assert _best(asset, sadness=0.9).mouth == "sob"
+
+
 def test_ties_go_to_the_lower_number(asset):
     score = np.zeros(len(asset.search))
     score[[700, 40, 9000]] = 1.0
