@@ -203,8 +203,9 @@ def planner_stage(assets: StepAssets, world: World, intent: Intent) -> World:
     if world.speech is not None and world.speech.cues is not None:
         lead_s, window_s = library.stroke_lead_s(emotion)[0], assets.planner.config.word_window_s
         words = world.speech.cues.factors(world.time_s, lead_s, window_s)[None, :]
-    person = assets.talk.person
-    habit = habit_of(assets.planner, person.habit_units, person.habit_rate)
+    # Somebody's own habits belong to their talk; a feeling that is performed alone has nobody's.
+    person = assets.talk.person if world.talk is not None else None
+    habit = None if person is None else habit_of(assets.planner, person.habit_units, person.habit_rate)
     signal = PlannerSignal(emotion=emotion, words=words, time_s=world.time_s, habit=habit)
     state, decisions = assets.planner.advance(world.body.planner, signal, TICK_S)
     return replace(world, body=replace(world.body, planner=state, decisions=decisions, signal=signal))
