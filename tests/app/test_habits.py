@@ -18,7 +18,7 @@ from game.core.errors import BadInput
 from game.embos import PlannerSignal, check_habit, greet, habit_of
 from game.emotion import Temperament
 
-N, SECONDS = 14, 80
+N, SECONDS = 14, 50
 TICK_S = 1 / 30
 
 

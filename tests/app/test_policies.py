@@ -113,7 +113,7 @@ def test_what_is_not_in_the_view_changes_no_move(assets) -> None:
 
 def test_words_are_told_only_where_a_line_tells_them(assets) -> None:
     eyes, told = Eyes(assets), []
-    for episode in range(60):
+    for episode in range(40):
         for decision in play_episode(seat(assets, "random"), 2, episode):
             said = eyes.told(decision.after)
             told.append(said)
@@ -283,7 +283,7 @@ def test_the_explorer_comes_where_good_players_seldom_come(assets) -> None:
     def odd(name: str) -> tuple[int, int]:
         """Talks in which one kind of line was said three times or more; lines that landed wrong."""
         place, stubborn, wrong = seat(assets, name), 0, 0
-        for episode in range(60):
+        for episode in range(40):
             records = [dict(d.after.record) for d in play_episode(place, 4, episode)]
             acts = [r["act"] for r in records if r["act"] not in {"wait", "offer"}]
             stubborn += any(acts.count(act) >= 3 for act in acts)
@@ -291,6 +291,6 @@ def test_the_explorer_comes_where_good_players_seldom_come(assets) -> None:
         return stubborn, wrong
 
     (stubborn, wrong), (seldom, never) = odd("explorer"), odd("oracle")
-    assert stubborn > 5 + seldom
-    assert wrong > 20 + never
+    assert stubborn > 3 + seldom
+    assert wrong > 12 + never
     assert "explorer" not in COMPARED, "it plays to come everywhere, not to win"
