@@ -149,7 +149,8 @@ def test_a_game_from_the_title_to_a_deal_and_to_a_refusal(open_desk) -> None:
     assert first["purse"] == first["budget"] - first["bought"][0]["price"]
 
     # Back to the table, the next thing, and walk away from it (G).
-    desk.until(lambda: desk.saved()["afternoon"]["talks"] == 2, "the refusal", keys=("space", "2", "space", "g"))
+    desk.until(lambda: bool(desk.saved().get("talk")), "the next talk", keys=("space", "2"))
+    desk.until(lambda: desk.saved()["afternoon"]["talks"] == 2, "the refusal", keys=("space", "g"))
     second = desk.saved()["afternoon"]
     assert len(second["bought"]) == 1
     assert second["stalls"]["flea"]["annoyance"] == 1
