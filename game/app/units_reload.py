@@ -18,7 +18,7 @@ __all__ = ["Known", "UnitsWatch", "load_body", "take_up_units", "watched_units"]
 
 POLL_S = 0.1
 """Files are looked at ten times a second: new units are to be seen within a second."""
-YIELD_SHARE, MOST_YIELD_S = 0.5, 1.0
+YIELD_SHARE, MOST_YIELD_S = 0.75, 1.0
 """While new units are read a frame waits for them by this share of it: drawing keeps the interpreter to itself, and the
 reading would hardly get on beside it. A machine that draws slowly waits once, one that draws fast is not seen to."""
 SAID_S = 6.0
@@ -88,6 +88,7 @@ class UnitsWatch:
     _late_s: float = POLL_S
     _said_s: float = 0.0
     _seen: bool = False
+    _fresh: bool = False  # changed at the last look; read once two looks are alike, for the files are two
     _thread: threading.Thread | None = None
     _known: Known = field(default_factory=Known)
     _read: list[tuple[Planner, Performer] | str] = field(default_factory=list)
@@ -115,13 +116,14 @@ class UnitsWatch:
         changed = self._watch.look(self.files) or not self._seen
         self._seen = True
         if self._thread is None:
-            if changed:
+            if self._fresh and not changed:
                 self._begin()
+            self._fresh = changed
         elif not self._thread.is_alive():
             self._thread = None
             found = self._read.pop()
             if changed:
-                self._begin()  # the files changed while they were read: what was read may be half of each
+                self._fresh = True  # the files changed while they were read: what was read may be half of each
             else:
                 self._end(session, found)
         elif changed:
