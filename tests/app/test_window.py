@@ -38,6 +38,7 @@ class Desk:
                 str(folder),
                 "+extension",
                 "GLX",
+                "-noreset",  # else the server starts anew, deaf for a moment, whenever its last client leaves
             ],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,

@@ -35,7 +35,8 @@ class Screen:
         self.log = folder / "log"
         self.window: subprocess.Popen[bytes] | None = None
         self.server = subprocess.Popen(
-            ["Xvfb", f":{number}", "-screen", "0", f"{SIZE}x24", "-fbdir", str(folder), "+extension", "GLX"],
+            ["Xvfb", f":{number}", "-noreset", "-screen", "0", f"{SIZE}x24", "-fbdir", str(folder)]
+            + ["+extension", "GLX"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         end = time.monotonic() + 20

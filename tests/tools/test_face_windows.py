@@ -30,7 +30,18 @@ class Desk:
         self._display = f":{number}"
         self._environment = os.environ | {"DISPLAY": self._display, "SDL_VIDEODRIVER": "x11"}
         self._server = subprocess.Popen(
-            ["Xvfb", self._display, "-screen", "0", f"{SIZE}x24", "-fbdir", str(folder), "+extension", "GLX"],
+            [
+                "Xvfb",
+                self._display,
+                "-noreset",
+                "-screen",
+                "0",
+                f"{SIZE}x24",
+                "-fbdir",
+                str(folder),
+                "+extension",
+                "GLX",
+            ],
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
