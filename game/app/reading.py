@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from game.app.world import World
+from game.core.errors import BadInput
+from game.formats.files import write_text
 
 __all__ = ["AUTO_S", "ReadLines", "Reader", "load_read", "save_read"]
 
@@ -87,10 +87,7 @@ def save_read(read: ReadLines, folder: Path) -> None:
         return
     read.changed = False
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=folder, prefix=".read.", suffix=".part")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            json.dump({stall: sorted(lines) for stall, lines in sorted(read.stalls.items())}, file)
-        os.replace(name, folder / "read.json")
-    except OSError:
+        text = json.dumps({stall: sorted(lines) for stall, lines in sorted(read.stalls.items())})
+        write_text(folder / "read.json", text, make_folder=True)
+    except BadInput:
         return

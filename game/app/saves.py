@@ -9,8 +9,6 @@ when there was one stall, are taken over.
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -23,6 +21,7 @@ from game.app.talk import Choice, TalkAssets, TalkState, choose, talk_env
 from game.app.world import Mark, first_mark, next_mark
 from game.core.errors import BadInput, Where
 from game.emotion import Feeling
+from game.formats.files import write_text
 from game.market import Answer, Bargain
 from game.story import Beat, Memory, restore, resume
 from game.story import save as save_story
@@ -64,23 +63,7 @@ def game_to_dict(game: SavedGame) -> dict[str, Any]:
 
 def save_game(path: Path, game: SavedGame) -> None:
     """Write the game to ``path``, atomically. Raises BadInput where the folder cannot be written."""
-    text = json.dumps(game_to_dict(game), ensure_ascii=False, indent=1)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError as error:
-        raise BadInput(
-            "save", where=Where(path), expected="a folder that can be written", seen=error.strerror or str(error)
-        ) from None
+    write_text(path, json.dumps(game_to_dict(game), ensure_ascii=False, indent=1), make_folder=True, durable=True)
 
 
 def load_game(path: Path, bazaar: Bazaar, talks: Mapping[str, TalkAssets]) -> SavedGame:

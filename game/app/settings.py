@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
@@ -13,6 +12,8 @@ from typing import Any
 import platformdirs
 
 from game.app.input import COMMANDS
+from game.core.errors import BadInput
+from game.formats.files import write_text
 
 __all__ = ["CHOICES", "TIMERS", "Settings", "load_settings", "save_settings", "user_folder"]
 
@@ -98,17 +99,7 @@ def save_settings(settings: Settings, folder: Path | None = None) -> str | None:
     """Write the settings atomically; returns one line where that is impossible (the game goes on without)."""
     path = (folder or user_folder()) / "settings.json"
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=".settings.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                json.dump(asdict(settings), file, indent=1)
-                file.flush()
-                os.fsync(file.fileno())
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError as error:
-        return f"{path}: settings could not be saved ({error.strerror})"
+        write_text(path, json.dumps(asdict(settings), indent=1), make_folder=True, durable=True)
+    except BadInput as error:
+        return f"settings could not be saved: {error}"
     return None

@@ -1,4 +1,5 @@
-"""Bounded reading of files from outside: size checked before a byte is taken, one clear error for each fault."""
+"""Bounded reading of files from outside (size checked before a byte is taken), and writing that is whole or not at all;
+one clear error for each fault."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from pathlib import Path
 
 from game.core.errors import BadInput, Where
 
-__all__ = ["decode_utf8", "read_bytes", "write_text"]
+__all__ = ["decode_utf8", "read_bytes", "write_bytes", "write_text"]
 
 
 def read_bytes(path: Path | str, *, max_bytes: int, what: str = "file") -> bytes:
@@ -44,19 +45,38 @@ def decode_utf8(data: bytes, path: Path | str) -> str:
     return text.removeprefix("\ufeff")
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write UTF-8 text so that the file appears whole or not at all. Raises BadInput where that is impossible."""
+def write_text(path: Path, text: str, *, make_folder: bool = False, durable: bool = False) -> None:
+    """write_bytes of UTF-8 text."""
+    write_bytes(path, text.encode("utf-8"), make_folder=make_folder, durable=durable)
+
+
+def write_bytes(
+    path: Path, data: bytes, *, make_folder: bool = False, durable: bool = False, keep_rights: bool = False
+) -> None:
+    """Write so that the file appears whole or not at all; raises BadInput where that is impossible.
+
+    make_folder: make the folders that are missing; durable: on the disk before the old file goes, so that a power cut
+    leaves one of them; keep_rights: the file stands already, and stays as open as it was.
+    """
     temporary = ""
     try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        if make_folder:
+            path.parent.mkdir(parents=True, exist_ok=True)
         # mkstemp's 0600 would hide the file from everybody else.
-        os.chmod(temporary, 0o644)
+        rights = stat.S_IMODE(path.stat().st_mode) if keep_rights else 0o644
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(data)
+            if durable:
+                stream.flush()
+                os.fsync(stream.fileno())
+        os.chmod(temporary, rights)
         os.replace(temporary, path)
-    except OSError as error:
+    except BaseException as error:
         if temporary:
             Path(temporary).unlink(missing_ok=True)
+        if not isinstance(error, OSError):
+            raise
         raise BadInput(f"cannot write this file: {error.strerror or error}", where=Where(path)) from None
 
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from game.core.errors import BadInput, Where
-from game.formats.files import decode_utf8, read_bytes
+from game.formats.files import decode_utf8, read_bytes, write_bytes
 from game.formats.yaml_source import Node, parse_yaml
 
 __all__ = ["fix_file", "with_ids"]
@@ -33,7 +30,7 @@ def fix_file(path: Path) -> list[str]:
     data = read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file")
     text, ids = with_ids(decode_utf8(data, path), path)
     if ids:
-        _replace(path, (_BOM if data.startswith(_BOM) else b"") + text.encode("utf-8"))
+        write_bytes(path, (_BOM if data.startswith(_BOM) else b"") + text.encode("utf-8"), keep_rights=True)
     return ids
 
 
@@ -129,19 +126,3 @@ def _entries(node: Node | None) -> list[tuple[Node, Node]]:
 
 def _items(node: Node | None) -> list[Node]:
     return node.as_list() if node is not None and node.kind == "sequence" else []
-
-
-def _replace(path: Path, data: bytes) -> None:
-    """Write the bytes so that the file appears whole or not at all, with the rights it had."""
-    temporary = ""
-    try:
-        mode = path.stat().st_mode & 0o777
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-        os.chmod(temporary, mode)
-        os.replace(temporary, path)
-    except OSError as error:
-        if temporary:
-            Path(temporary).unlink(missing_ok=True)
-        raise BadInput(f"cannot write this file: {error.strerror or error}", where=Where(path)) from None

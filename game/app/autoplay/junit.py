@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
@@ -10,6 +9,7 @@ from xml.etree import ElementTree
 from game.app.autoplay.coverage import covered
 from game.app.autoplay.requirements import Finding
 from game.app.autoplay.runs import Run
+from game.formats.files import write_bytes
 
 __all__ = ["write_junit"]
 
@@ -48,6 +48,4 @@ def write_junit(path: Path, run: Run, findings: Sequence[Finding]) -> None:
         suite.set("tests", str(len(suite.findall("testcase"))))
         suite.set("failures", str(failures))
     ElementTree.indent(root)
-    fresh = path.with_name(f".{path.name}.part")
-    fresh.write_bytes(ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")
-    os.replace(fresh, path)
+    write_bytes(path, ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -18,6 +17,7 @@ from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import COMPARED, TUNED, FixedPlan, load_tuned
 from game.core.errors import BadInput
+from game.formats.files import write_text
 from game.formats.yaml_source import nearest
 
 __all__ = ["keep", "run_search"]
@@ -82,9 +82,7 @@ def keep(findings: list[Found], path: Path = TUNED) -> None:
     for who, own in (("fixed", fixed), *others.items()):
         if own:
             rows += [f"{who}:"] + [f"  {name}: {_flow(values)}" for name, values in own.items()]
-    fresh = path.with_name(f".{path.name}.part")
-    fresh.write_text(_HEAD + "\n".join(rows) + "\n", encoding="utf-8")
-    os.replace(fresh, path)
+    write_text(path, _HEAD + "\n".join(rows) + "\n")
 
 
 def _plain(strategy: Any) -> dict[str, Any]:

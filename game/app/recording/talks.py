@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +16,8 @@ from game.app.session import Session
 from game.app.step import AFTER_LINE_S
 from game.app.talk import Choice, TalkAssets, TalkState, choose, start_talk
 from game.app.world import TICK_S, Intent, enter_talk
-from game.core.errors import BadInput, Where
+from game.core.errors import BadInput
+from game.formats.files import write_text
 
 __all__ = ["TalkPlayer", "play_talk", "write_talk"]
 
@@ -38,20 +37,7 @@ def write_talk(
     events.append(Event(len(moves), "end", {"why": str(last.beat.ended or ""), "game": talk_digest(last), "body": ""}))
     rows = [header.to_dict(), *(event.to_dict() for event in events)]
     text = "".join(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in rows)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-                file.write(text)
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError as error:
-        raise BadInput(
-            "recording", where=Where(path), expected="a folder that can be written", seen=error.strerror
-        ) from None
+    write_text(path, text, make_folder=True)
 
 
 def play_talk(assets: TalkAssets, recording: Recording) -> tuple[TalkState | None, Divergence | None, int]:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
-import os
 import struct
-import tempfile
 import zlib
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from game.core.errors import BadInput, Where
+from game.formats.files import write_text
 from game.tools.compare.frames import Compared, Limits
 
 __all__ = ["encode_png", "heat", "write_comparison"]
@@ -71,18 +69,7 @@ def write_comparison(path: Path, title: str, frames: Sequence[Compared], limits:
         f" worst tile {limits.tile}.</p>",
     ]
     parts += [_section(frame) for frame in sorted(frames, key=lambda frame: frame.same)]
-    try:
-        handle, name = tempfile.mkstemp(dir=path.resolve().parent, prefix=f".{path.name}.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write("\n".join([*parts, "</html>"]))
-            os.chmod(name, 0o644)
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError as error:
-        raise BadInput(where=Where(path), expected="a folder that can be written", seen=error.strerror) from None
+    write_text(path, "\n".join([*parts, "</html>"]))
 
 
 def _section(frame: Compared) -> str:

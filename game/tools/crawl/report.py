@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import html
-import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from game.core.errors import BadInput, Where
+from game.formats.files import write_text
 from game.tools.crawl.hands import Outside
 from game.tools.crawl.paper import Box
 from game.tools.crawl.visit import Finding
@@ -41,18 +39,7 @@ def write_page(path: Path, stall: str, findings: Sequence[Finding], hands: Seque
     parts.append('<div class="faults">')
     parts += [_figure(finding) for finding in findings[:MAX_SKETCHES]]
     parts.append("</div></html>")
-    try:
-        handle, name = tempfile.mkstemp(dir=path.resolve().parent, prefix=f".{path.name}.", suffix=".part")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write("\n".join(parts))
-            os.chmod(name, 0o644)
-            os.replace(name, path)
-        except BaseException:
-            os.unlink(name)
-            raise
-    except OSError as error:
-        raise BadInput(where=Where(path), expected="a folder that can be written", seen=error.strerror) from None
+    write_text(path, "\n".join(parts))
 
 
 def _figure(finding: Finding) -> str:

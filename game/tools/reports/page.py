@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -15,6 +14,7 @@ from game.app.autoplay.tally import Tally
 from game.app.content import load_talk_assets, stall_path
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
+from game.formats.files import write_text
 from game.tools.reports.plots import PLOTS, figure_svg, load_matplotlib, tallies_of
 
 __all__ = ["write_plots", "write_report"]
@@ -56,7 +56,7 @@ def write_report(path: Path, run: Run, findings: Sequence[Finding]) -> None:
         '<meta name="viewport" content="width=device-width, initial-scale=1"><title>Autoplay report</title>'
         f"<style>{style}</style></head><body><main>{''.join(body)}</main></body></html>\n"
     )
-    _write(path, page.encode())
+    write_text(path, page)
 
 
 def write_plots(folder: Path, run: Run) -> None:
@@ -76,15 +76,6 @@ def write_plots(folder: Path, run: Run) -> None:
                 place = folder / f"{stall_path(stall).stem}_{name}.{kind}"
                 figure.savefig(place, dpi=150, bbox_inches="tight", metadata=metadata)
             plt.close(figure)
-
-
-def _write(path: Path, data: bytes) -> None:
-    fresh = path.with_name(f".{path.name}.part")
-    try:
-        fresh.write_bytes(data)
-        os.replace(fresh, path)
-    except OSError as error:
-        raise BadInput("--report", expected="a file that can be written", seen=f"{path}: {error.strerror}") from None
 
 
 def _title(stall: str) -> str:
