@@ -9,13 +9,14 @@ from pathlib import Path
 
 from game.app.world import World
 from game.core.errors import BadInput
-from game.formats.files import write_text
+from game.formats.files import read_bytes, write_text
 
 __all__ = ["AUTO_S", "ReadLines", "Reader", "load_read", "save_read"]
 
 AUTO_S: dict[str, float] = {"off": 0.0, "slow": 3.2, "normal": 1.7, "fast": 0.8}
 """Seconds a line stands after it has been spoken before the next begins by itself; 0: never."""
 MAX_LINES = 50_000
+_MAX_BYTES = 8_000_000
 
 
 @dataclass
@@ -68,8 +69,8 @@ class Reader:
 def load_read(folder: Path) -> ReadLines:
     """What has been read; nothing where the file is missing or broken (no loss: a line is only new once more)."""
     try:
-        data = json.loads((folder / "read.json").read_text(encoding="utf-8")[:8_000_000])
-    except (OSError, ValueError, RecursionError):
+        data = json.loads(read_bytes(folder / "read.json", max_bytes=_MAX_BYTES, what="list of lines"))
+    except (BadInput, ValueError, RecursionError):
         return ReadLines()
     if not isinstance(data, Mapping):
         return ReadLines()

@@ -9,20 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from game.core.errors import BadInput, Where
+from game.formats.files import read_bytes
 
-__all__ = ["SaveReader", "read_json"]
+__all__ = ["MAX_BYTES", "SaveReader", "read_json"]
 
 MAX_BYTES = 1_000_000
 
 
 def read_json(path: Path) -> SaveReader:
     """Read a save's JSON. Raises BadInput where the file cannot be read, is too large, or is no JSON."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise BadInput(where=Where(path), expected=f"a save of at most {MAX_BYTES} bytes", seen=path.stat().st_size)
-        raw = path.read_bytes()
-    except OSError as error:
-        raise BadInput("save", where=Where(path), expected="a readable file", seen=error.strerror or "?") from None
+    raw = read_bytes(path, max_bytes=MAX_BYTES, what="save")
     try:
         data = json.loads(raw.decode("utf-8"))
     except (ValueError, RecursionError) as error:

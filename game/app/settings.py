@@ -13,11 +13,12 @@ import platformdirs
 
 from game.app.input import COMMANDS
 from game.core.errors import BadInput
-from game.formats.files import write_text
+from game.formats.files import read_bytes, write_text
 
 __all__ = ["CHOICES", "TIMERS", "Settings", "load_settings", "save_settings", "user_folder"]
 
 APP = "mental-communication-game"
+_MAX_BYTES = 100_000
 
 CHOICES: dict[str, tuple[Any, ...]] = {
     "language": ("en", "ja"),
@@ -77,9 +78,11 @@ def load_settings(folder: Path | None = None) -> tuple[Settings, str | None]:
     try:
         if not path.exists():
             return Settings(), None
-        data = json.loads(path.read_text(encoding="utf-8")[:100_000])
+        data = json.loads(read_bytes(path, max_bytes=_MAX_BYTES, what="settings"))
         if not isinstance(data, dict):
             raise ValueError("not a mapping")
+    except BadInput as error:
+        return Settings(), f"{error}; using the defaults"
     except (OSError, ValueError, RecursionError) as error:
         return Settings(), f"{path}: settings not readable ({str(error)[:80]}), using the defaults"
     known = {f.name for f in fields(Settings)}

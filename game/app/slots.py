@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from game.app.save_reader import MAX_BYTES
 from game.app.saves import SavedGame, save_game
 from game.core.errors import BadInput
+from game.formats.files import read_bytes
 from game.render.assets import load_picture, save_png
 
 __all__ = ["AUTOSAVE", "QUICK", "SLOTS", "SlotInfo", "keep", "look_into", "small"]
@@ -52,7 +54,7 @@ def look_into(folder: Path, name: str) -> SlotInfo:
     if not path.is_file():
         return SlotInfo(name)
     try:
-        data = json.loads(path.read_text(encoding="utf-8")[:1_000_000])
+        data = json.loads(read_bytes(path, max_bytes=MAX_BYTES, what="save"))
         afternoon = data["afternoon"]
         info = SlotInfo(
             name,
@@ -63,7 +65,7 @@ def look_into(folder: Path, name: str) -> SlotInfo:
             talking=data.get("talk") is not None,
             picture=_picture(folder / f"{name}.png"),
         )
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
+    except (BadInput, ValueError, KeyError, TypeError, AttributeError, RecursionError, OverflowError) as error:
         return SlotInfo(name, unreadable=" ".join(str(error).split())[:80] or type(error).__name__)
     return info
 

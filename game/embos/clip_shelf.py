@@ -9,6 +9,8 @@ from pathlib import Path
 from game.core.errors import BadInput
 from game.embos.annotations import check_fps, reference_clip
 from game.embos.clips import KnownClips, TakeClip
+from game.formats.bvh import MAX_BYTES
+from game.formats.files import read_bytes
 from game.formats.yaml_source import Node
 
 __all__ = ["ClipShelf"]
@@ -28,8 +30,8 @@ class ClipShelf:
     def clip(self, path: Path, fps: Node | None = None) -> TakeClip:
         """What game.embos.annotations.reference_clip gives. Raises BadInput."""
         try:
-            content = path.read_bytes()
-        except OSError:
+            content = read_bytes(path, max_bytes=MAX_BYTES, what="BVH file")
+        except BadInput:
             return reference_clip(path, fps)  # which knows how to say it
         digest = hashlib.sha256(content).digest()
         with self._lock:

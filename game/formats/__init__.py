@@ -17,6 +17,7 @@ from game.formats.gltf_model import (
 from game.formats.gltf_skeleton import GltfSkeleton, animation_clip, skeleton_of
 from game.formats.joint_map import MAPS, JointMap, detect_map, find_map, load_map, map_from_bones, map_from_names
 from game.formats.json_shape import Report
+from game.formats.picture_header import picture_size
 from game.formats.toon_material import ToonMaterial, ToonTexture, toon_materials
 from game.formats.vrm import build_vrm, build_vrma, read_vrm, read_vrma
 from game.formats.vrm_model import (
@@ -74,6 +75,7 @@ __all__ = [
     "map_from_names",
     "nearest",
     "parse_yaml",
+    "picture_size",
     "read_bvh",
     "read_gltf",
     "read_vrm",

@@ -23,13 +23,14 @@ from game.core.skeleton import Skeleton
 from game.formats.bvh_hierarchy import LARGEST, BvhJoint, BvhText, Token, number, read_hierarchy
 from game.formats.files import read_bytes, write_text
 
-__all__ = ["BvhFile", "estimate_scale", "read_bvh", "to_metres", "write_bvh"]
+__all__ = ["MAX_BYTES", "BvhFile", "estimate_scale", "read_bvh", "to_metres", "write_bvh"]
 
 Floats = NDArray[np.float64]
 
 _WORD = re.compile(rb"\S+")
 _HEADER = re.compile(rb"\s*(Frames|Frame\s+Time)\s*:\s*(\S*)\s*", re.IGNORECASE)
 _NUMERIC = b"0123456789+-.eE \t\r\n"
+MAX_BYTES = 64_000_000
 _MAX_VALUES = 16_000_000
 _BLOCK_VALUES = 250_000
 _NEGLIGIBLE = 1e-30  # far below any angle or length; its products would underflow
@@ -54,7 +55,7 @@ class BvhFile:
 def read_bvh(
     path: Path | str,
     *,
-    max_bytes: int = 64_000_000,
+    max_bytes: int = MAX_BYTES,
     max_joints: int = 2_000,
     max_depth: int = 200,
     max_frames: int = 200_000,

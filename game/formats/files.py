@@ -10,28 +10,37 @@ from pathlib import Path
 
 from game.core.errors import BadInput, Where
 
-__all__ = ["decode_utf8", "read_bytes", "write_bytes", "write_text"]
+__all__ = ["check_regular", "decode_utf8", "read_bytes", "write_bytes", "write_text"]
 
 
 def read_bytes(path: Path | str, *, max_bytes: int, what: str = "file") -> bytes:
     """The bytes of a regular file of at most max_bytes. Raises BadInput (missing, a folder, a device, too big)."""
     path = Path(path)
+    size = check_regular(path, what)
+    if size > max_bytes:
+        raise BadInput(what, where=Where(path), expected=f"at most {max_bytes} bytes", seen=size)
     try:
-        status = path.stat()
-        if not stat.S_ISREG(status.st_mode):
-            # A pipe or device could block for ever or never end.
-            raise BadInput(what, where=Where(path), expected="a regular file", seen=_kind(status.st_mode))
-        if status.st_size > max_bytes:
-            raise BadInput(what, where=Where(path), expected=f"at most {max_bytes} bytes", seen=status.st_size)
         with path.open("rb") as stream:
             data = stream.read(max_bytes + 1)
     except OSError as error:
         raise BadInput(f"cannot read this {what}: {error.strerror or error}", where=Where(path)) from None
-    except ValueError:
-        raise BadInput(f"cannot read this {what}: the path holds a NUL byte", where=Where(repr(str(path)))) from None
     if len(data) > max_bytes:
         raise BadInput(what, where=Where(path), expected=f"at most {max_bytes} bytes", seen="more")
     return data
+
+
+def check_regular(path: Path, what: str = "file") -> int:
+    """Size of a file that can be opened without waiting. Raises BadInput (missing, a folder, a device, a pipe)."""
+    try:
+        status = path.stat()
+    except OSError as error:
+        raise BadInput(f"cannot read this {what}: {error.strerror or error}", where=Where(path)) from None
+    except ValueError:
+        raise BadInput(f"cannot read this {what}: the path holds a NUL byte", where=Where(repr(str(path)))) from None
+    if not stat.S_ISREG(status.st_mode):
+        # A pipe or device could block for ever or never end.
+        raise BadInput(what, where=Where(path), expected="a regular file", seen=_kind(status.st_mode))
+    return status.st_size
 
 
 def decode_utf8(data: bytes, path: Path | str) -> str:

@@ -16,7 +16,8 @@ import pygame.surfarray
 from numpy.typing import NDArray
 
 from game.core.errors import BadInput, Where
-from game.formats import GltfFile, GltfMaterial, GltfNode, GltfPrimitive, read_gltf
+from game.formats import GltfFile, GltfMaterial, GltfNode, GltfPrimitive, picture_size, read_gltf
+from game.formats.files import read_bytes
 from game.render.model import (
     KINDS,
     CharacterMesh,
@@ -34,6 +35,7 @@ from game.render.mood import MARKET_MOOD, Mood
 from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
 from game.render.weave import MOTIFS
 
+_MAX_BYTES, _MAX_PIXELS = 256_000_000, 128_000_000  # of a picture; 16 frames of 3840×2160 in a strip
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
 
 __all__ = ["character_parts", "load_character", "load_picture", "load_stall", "save_png"]
@@ -107,10 +109,15 @@ def load_stall(path: Path, mood: Mood = MARKET_MOOD) -> StaticMesh:
 
 
 def load_picture(path: Path) -> NDArray[np.uint8]:
-    """A picture file as (h, w, 3) uint8, first row at the top. Raises BadInput."""
+    """A PNG or JPEG file as (h, w, 3) uint8, first row at the top. Raises BadInput; a huge one is never unpacked."""
+    data = read_bytes(path, max_bytes=_MAX_BYTES, what="picture")
+    width, height = picture_size(data) or (0, 0)
+    if not 0 < width * height <= _MAX_PIXELS:
+        raise BadInput("picture", where=Where(path), expected=f"a PNG or JPEG of at most {_MAX_PIXELS} pixels",
+                       seen=f"{width}×{height}" if width else "something else")  # fmt: skip
     try:
-        surface = pygame.image.load(str(path))
-    except (pygame.error, OSError) as error:
+        surface = pygame.image.load(io.BytesIO(data), "x.png" if data.startswith(b"\x89PNG") else "x.jpg")
+    except (pygame.error, OSError, ValueError, SystemError) as error:
         raise BadInput(f"unreadable picture: {error}", where=Where(path)) from error
     return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import struct
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,40 +12,15 @@ import pygame.transform
 from numpy.typing import NDArray
 
 from game.core.errors import BadInput, Where
-from game.formats import GltfImage
+from game.formats import GltfImage, picture_size
 
-__all__ = ["MAX_PIXELS", "MAX_SIDE", "decode_images", "picture_size"]
+__all__ = ["MAX_PIXELS", "MAX_SIDE", "decode_images"]
 
 MAX_SIDE = 8192
 MAX_PIXELS = 96_000_000
 """Of all pictures of one avatar together."""
 SHOWN_SIDE = 2048
 """Larger ones are made smaller: nobody is nearer."""
-
-
-def picture_size(data: bytes) -> tuple[int, int] | None:
-    """Width and height of a PNG or JPEG as its header says; None for anything else."""
-    if data.startswith(b"\x89PNG\r\n\x1a\n") and data[12:16] == b"IHDR" and len(data) >= 24:
-        width, height = struct.unpack_from(">II", data, 16)
-        return int(width), int(height)
-    if not data.startswith(b"\xff\xd8"):
-        return None
-    at = 2
-    while at + 9 < len(data):
-        if data[at] != 0xFF:
-            return None
-        kind = data[at + 1]
-        if kind == 0xFF or 0xD0 <= kind <= 0xD8:
-            at += 1 if kind == 0xFF else 2
-            continue
-        (length,) = struct.unpack_from(">H", data, at + 2)
-        if 0xC0 <= kind <= 0xCF and kind not in (0xC4, 0xC8, 0xCC):
-            height, width = struct.unpack_from(">HH", data, at + 5)
-            return int(width), int(height)
-        if length < 2:
-            return None
-        at += 2 + length
-    return None
 
 
 def decode_images(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -49,7 +50,7 @@ def lint_files(paths: Iterable[Path], purse: int | None = None, *, walks: int = 
     parts: list[tuple[Path, str]] = []
     for path in dialogue_files(paths):
         try:
-            text = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file"), path)
+            text = _text(path)
         except BadInput as error:
             findings.take("E_YAML", error)
             continue
@@ -67,6 +68,10 @@ def lint_files(paths: Iterable[Path], purse: int | None = None, *, walks: int = 
     return findings.ordered()
 
 
+def _text(path: Path) -> str:
+    return decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="YAML file"), path)
+
+
 def _kind(text: str) -> str:
     """What a file is, told by the keys that begin its rows."""
     keys = {row.partition(":")[0] for row in text.split("\n") if row[:1].isalpha()}
@@ -82,8 +87,10 @@ def _lint_part(path: Path, text: str, findings: Findings) -> None:
     for folder in path.absolute().parents[:_STALLS_ABOVE]:
         for stall in sorted(folder.glob("*.yaml")):
             of_stall = Findings()
-            if is_stall(stall) and "include" in (whole := decode_utf8(stall.read_bytes(), stall)):
-                lint_text(stall, whole, of_stall)
+            # A neighbour that cannot be read is no stall that includes it, and nobody asked about it.
+            with contextlib.suppress(BadInput):
+                if is_stall(stall) and "include" in (whole := _text(stall)):
+                    lint_text(stall, whole, of_stall)
             if any(file.resolve() == path.resolve() for file in of_stall.files):
                 found = True
                 for finding in of_stall.all:

@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from game.formats import Report, join_meshes, read_gltf, toon_materials
+from game.formats import Report, join_meshes, picture_size, read_gltf, toon_materials
 from game.formats.gltf_shape import LISTS
 from game.render import Camera, Device, FrameView, Renderer
 from game.render.avatar_model import AvatarLook, AvatarModel, build_avatar
-from game.render.avatar_textures import picture_size
 
 FACE = Camera((0.0, 1.42, -1.6), (0.0, 1.38, 0.0), 22.0)
 """0.x faces −Z; in the file's own space the customer stands there."""

@@ -17,6 +17,7 @@ from game.app.save_reader import SaveReader
 from game.app.settings import TIMERS
 from game.app.world import TEXT_SPEED
 from game.core.errors import BadInput, Where
+from game.formats.files import read_bytes
 
 __all__ = ["CHECK_TICKS", "MAX_BYTES", "VERSION", "Event", "Header", "Recording", "read_recording"]
 
@@ -102,13 +103,7 @@ class Recording:
 
 def read_recording(path: Path) -> Recording:
     """Read a recording. Raises BadInput with file and line where it is none or something in it is wrong."""
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise BadInput(where=Where(path), expected=f"at most {MAX_BYTES} bytes", seen=path.stat().st_size)
-        raw = path.read_bytes()
-    except OSError as error:
-        raise BadInput("recording", where=Where(path), expected="a readable file", seen=error.strerror or "?") from None
-    lines = raw.split(b"\n")
+    lines = read_bytes(path, max_bytes=MAX_BYTES, what="recording").split(b"\n")
     cut = lines.pop()  # what follows the last line break was never finished
     if not lines:
         raise BadInput(where=Where(path, 1), expected="a recording", seen="an empty file" if not cut else "no line")

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from game.core.errors import BadInput, Where
+from game.formats.files import check_regular
 from game.story import Script
 
 __all__ = ["Heat", "read_heat"]
@@ -82,6 +83,7 @@ def _greeting(script: Script, first: str) -> Iterator[str]:
 
 def _rows(path: Path) -> Iterator[tuple[int, str]]:
     """Lines with their numbers, none longer than a row can be."""
+    check_regular(path, "log")
     try:
         with path.open("rb") as raw:
             packed = raw.read(2) == _GZIP
