@@ -18,7 +18,7 @@ from game.render import Camera, Device, Level, Renderer
 __all__ = ["CARD_SIZE", "Cards"]
 
 CARD_SIZE = (576, 495)
-CARD_CAMERA = Camera((0.0, 1.17, 3.02), (0.0, 1.015, 0.0), 14.2)
+CARD_CAMERA = Camera((0.0, 1.17, 3.02), (0.0, 1.015, 0.0), 21.55, aspect=CARD_SIZE[0] / CARD_SIZE[1])
 SETTLE_TICKS = 24
 """Before the picture is taken the person has had this long to stand at ease."""
 

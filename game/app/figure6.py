@@ -60,7 +60,7 @@ PATIENT_MOVES = 3
 INSULT_SHARE = 0.3
 MAX_TICKS = 30 * 300
 SIZE_PX = (500, 440)
-CAMERA = Camera((-0.09, 1.17, 2.85), (-0.09, 0.98, 0.0), 14.4)
+CAMERA = Camera((-0.09, 1.17, 2.85), (-0.09, 0.995, 0.0), 23.5, aspect=SIZE_PX[0] / SIZE_PX[1])
 """She stands right of the middle and leaves the left to the overlays."""
 SIDE_PX = 60
 Policy = Callable[[TalkAssets, TalkState, np.random.Generator], Choice]

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 __all__ = ["Puppet", "StageAssets", "StageShow", "load_stage", "raised"]
 
 _HEAD = REFERENCE.index["head"]
-_STALL_SEEN_M, _FACE_SEEN_M = 1.25, 0.80
+_STALL_SEEN_M, _FACE_SEEN_M = 1.25, 0.99
 """Height of what a shot of the stall sees at its target, and of what a close-up does."""
 
 

@@ -33,7 +33,7 @@ CAMERAS: dict[str, Camera] = {
     "establishing": ESTABLISHING,
     **{name: camera for name, camera in SHOTS.items() if name != "home"},
     "closeup": CLOSEUP,
-    "body": Camera((0.0, 1.17, 2.85), (0.0, 0.965, 0.0), 13.5),
+    "body": Camera((0.0, 1.17, 2.85), (0.0, 0.965, 0.0), 26.06, aspect=10 / 11),
 }
 WARM_UP_S = 1.5
 """Before the first picture the feeling has had this long to reach the body."""

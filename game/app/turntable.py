@@ -64,10 +64,9 @@ def standing() -> Pose:
 
 def _camera(turn_rad: float, middle_m: float, height_m: float, aspect: float) -> Camera:
     """Level with ``middle_m``, seeing ``height_m`` of the person at the origin."""
-    # Pictures narrower than 16:9 keep the width of their design (game.render.camera).
-    half = height_m / 2.0 / _AWAY_M / max(1.0, (16.0 / 9.0) / aspect)
+    half = height_m / 2.0 / _AWAY_M
     eye = (_AWAY_M * float(np.sin(turn_rad)), middle_m + 0.12, _AWAY_M * float(np.cos(turn_rad)))
-    return Camera(eye, (0.0, middle_m, 0.0), float(np.degrees(2.0 * np.arctan(half))))
+    return Camera(eye, (0.0, middle_m, 0.0), float(np.degrees(2.0 * np.arctan(half))), aspect)
 
 
 def _views(stage: StageAssets, size: tuple[int, int], faces: bool) -> Iterator[NDArray[np.uint8]]:
@@ -82,7 +81,7 @@ def _views(stage: StageAssets, size: tuple[int, int], faces: bool) -> Iterator[N
         aspect = size[0] / size[1]
         if faces:
             face = load_face(ASSETS / "face")
-            bust = _camera(0.12, head_m + 0.16, 0.70, aspect)
+            bust = _camera(0.12, head_m + 0.165, 0.82, aspect)
             for name in FACES:
                 best = face.search.best(face.search.score_emotion(parse_emotion(f"{name}=1")))
                 chosen = face.model.parts.params(face.search.numbers(best))
@@ -98,7 +97,8 @@ def _views(stage: StageAssets, size: tuple[int, int], faces: bool) -> Iterator[N
 
 
 def _draw(renderer: Renderer, show: StageShow, params: NDArray[np.float64], camera: Camera) -> NDArray[np.uint8]:
-    renderer.draw(replace(show.frame(params, camera=camera), show_stall=False))
+    # The camera follows this person's head already: nothing is raised once more.
+    renderer.draw(replace(show.frame(params), camera=camera, show_stall=False))
     return renderer.read_pixels()
 
 

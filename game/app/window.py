@@ -51,7 +51,7 @@ MAX_TICKS_A_FRAME = 5
 """After a stall (a dragged window) the simulation catches up by at most this much, then lets time go."""
 THUMB_SIZE = (512, 288)
 TELL_SIZE = (384, 300)
-TELL_CAMERA = Camera((0.0, 1.17, 3.02), (0.0, 0.975, 0.0), 14.0)
+TELL_CAMERA = Camera((0.0, 1.17, 3.02), (0.0, 1.02, 0.0), 21.2, aspect=TELL_SIZE[0] / TELL_SIZE[1])
 
 
 class Window:

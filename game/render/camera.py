@@ -12,7 +12,7 @@ __all__ = ["CLOSEUP", "HERO", "Camera", "look_at", "orthographic", "perspective"
 
 Matrix = NDArray[np.float64]
 NEAR_M, FAR_M = 0.3, 30.0
-DESIGN_ASPECT = 16.0 / 9.0  # pictures are composed for it; narrower ones keep its width, wider ones its height
+DESIGN_ASPECT = 16.0 / 9.0
 
 
 def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0.0, 1.0, 0.0)) -> Matrix:
@@ -47,16 +47,19 @@ def orthographic(half_width: float, half_height: float, near: float, far: float)
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the picture is taken from: eye and target in metres, vertical field of a 16:9 picture in degrees."""
+    """Where the picture is taken from: eye and target in metres, vertical field in degrees of a picture of the width to
+    height it is composed for."""
 
     eye: tuple[float, float, float]
     target: tuple[float, float, float]
     fov_deg: float
+    aspect: float = DESIGN_ASPECT
 
     def tan_half_height(self, aspect: float) -> float:
-        """Half the picture's height at distance 1; a picture narrower than 16:9 sees more above and below."""
+        """Half the picture's height at distance 1; a narrower picture than the composed one sees more above and below,
+        a wider one more at its sides: neither loses anything."""
         half = tan(radians(self.fov_deg) / 2.0)
-        return half * max(1.0, DESIGN_ASPECT / aspect)
+        return half * max(1.0, self.aspect / aspect)
 
     def distance_m(self, place: tuple[float, float, float]) -> float:
         """From the eye to a place."""
@@ -74,4 +77,4 @@ class Camera:
 
 
 HERO = Camera((0.0, 1.16, 3.02), (0.0, 0.985, 0.0), 24.5)
-CLOSEUP = Camera((0.10, 1.20, 2.05), (0.02, 1.09, 0.0), 22.0)
+CLOSEUP = Camera((0.10, 1.22, 2.05), (0.02, 1.12, 0.0), 27.0)
