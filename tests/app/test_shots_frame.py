@@ -1,4 +1,4 @@
-"""Every shot keeps the whole head of everybody in the picture, whatever the body does and whatever the window's shape."""
+"""Every shot keeps everybody's whole head in the picture, whatever the body does and whatever the window's shape."""
 
 from __future__ import annotations
 
