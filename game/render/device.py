@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from ctypes.util import find_library
 from typing import Any, Protocol, TypeVar, cast
 
 import moderngl
@@ -63,7 +64,8 @@ class Device:
     def headless(cls, width: int, height: int) -> Device:
         """A device without a window, through EGL. Raises MissingPart, in one line, where EGL is not to be had."""
         try:
-            options: dict[str, Any] = {"backend": "egl"}
+            # Without libGL, EGL itself hands out every function: libegl1 and a driver are enough.
+            options: dict[str, Any] = {"backend": "egl", "libgl": find_library("GL") or find_library("EGL")}
             context = moderngl.create_context(require=330, standalone=True, **options)
         except Exception as error:  # glcontext raises whatever the loader met: ImportError, OSError, its own Exception
             reason = " ".join(str(error).split())[:120]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 
 import moderngl
@@ -248,6 +250,21 @@ def test_a_machine_without_opengl_is_told_what_to_install_in_one_line(monkeypatc
     with pytest.raises(MissingPart, match="libegl1 libgl1-mesa-dri") as caught:
         Device.headless(64, 64)
     assert "\n" not in str(caught.value)
+
+
+def test_egl_alone_is_enough_where_libgl_is_not_installed():
+    # In a process of its own: a second context would take the first one's place.
+    program = """
+import game.render.device as device
+find = device.find_library
+device.find_library = lambda name: None if name == "GL" else find(name)
+made = device.Device.headless(8, 8)
+picture = made.context.simple_framebuffer((8, 8))
+picture.clear(0.0, 1.0, 0.0)
+print(picture.read()[:3].hex())
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert done.stdout.split()[-1:] == ["00ff00"], done.stderr
 
 
 def test_specks_drift_with_the_time_and_only_with_it(renderer, view):
