@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,9 +54,9 @@ class SaveReader:
 
     def number(self, low: float = -1e9, high: float = 1e9) -> float:
         value = self.data
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.fail("a number", value)
-        if not low <= value <= high:
+        if not low <= value <= high:  # neither nan nor infinity, nor a whole number too large to be a float
             raise self.fail(f"a number from {low:g} to {high:g}", value)
         return float(value)
 

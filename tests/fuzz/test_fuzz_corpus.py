@@ -16,15 +16,24 @@ MUTANTS = 60
 NASTY = (b"\0", b"-", b"1e999", b"nan", b"9" * 30, b"[", b"{", b'"', b"\xff\xfe", b": &a *a")
 
 
-@pytest.fixture(scope="module")
-def readers() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("fuzz_readers_under_test", HERE / "readers.py")
+def _module(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(f"fuzz_{name}_under_test", HERE / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="module")
+def readers() -> ModuleType:
+    return _module("readers")
+
+
+@pytest.fixture(scope="module")
+def mutators() -> ModuleType:
+    return _module("mutators")
 
 
 def damaged(data: bytes, rng: random.Random) -> bytes:
@@ -48,13 +57,13 @@ def damaged(data: bytes, rng: random.Random) -> bytes:
     return bytes(out)
 
 
-def test_every_reader_has_a_corpus(readers: ModuleType) -> None:
-    assert set(NAMES) == set(readers.READERS)
+def test_every_reader_has_a_corpus_and_a_mutator(readers: ModuleType, mutators: ModuleType) -> None:
+    assert set(NAMES) == set(readers.READERS) == set(mutators.STRUCTURED)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_reader_takes_its_good_files_and_survives_damaged_ones(
-    readers: ModuleType, name: str, tmp_path: Path
+    readers: ModuleType, mutators: ModuleType, name: str, tmp_path: Path
 ) -> None:
     rng = random.Random(f"damage {name}")
     for path in sorted((HERE / "corpus" / name).iterdir()):
@@ -63,5 +72,9 @@ def test_a_reader_takes_its_good_files_and_survives_damaged_ones(
         taken = readers.feed(name, data, tmp_path)
         if path.name.startswith("good"):
             assert taken, f"{path.name} is a good file"
-        for _ in range(MUTANTS if path.name.startswith("good") else 0):
-            readers.feed(name, damaged(data, rng), tmp_path)
+        if path.name.startswith("good"):
+            changed = [mutators.mutate_structure(name, data, 1_000_000, rng.getrandbits(31)) for _ in range(MUTANTS)]
+            assert sum(made is not None and made != data for made in changed) > MUTANTS // 2
+            for made in [*changed, *(damaged(data, rng) for _ in range(MUTANTS))]:
+                if made is not None:
+                    readers.feed(name, made, tmp_path)
