@@ -27,12 +27,12 @@ PALETTE: dict[str, Colour] = {
     "paper": hex_colour("FFF6E4", 0.95),
     "paper_warm": hex_colour("FFE9BF", 0.98),
     "line": hex_colour("6E4034"),
-    "red": hex_colour("D9483A"),
+    "red": hex_colour("D23F32"),
     "teal": hex_colour("2A7B78"),
     "indigo": hex_colour("34608A"),
     "gold": hex_colour("E0982F"),
     "shade": hex_colour("2B1630", 0.62),
-    "faint": hex_colour("8A6A5C"),
+    "faint": hex_colour("7A5C4F"),
     "white": hex_colour("FFFDF6"),
 }
 INK: Colour = hex_colour("3B1A1C")

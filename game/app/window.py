@@ -164,7 +164,7 @@ class Window:
                 user_folder(),
                 slot,
                 saved_game(session),
-                self.renderer.snapshot(replace(self._frame(), hud=None), THUMB_SIZE),
+                self.renderer.snapshot(replace(self.frame(), hud=None), THUMB_SIZE),
             )
             session.say(session.strings("saved"))
             self.gallery.drop(f"slot:{slot}")
@@ -190,7 +190,7 @@ class Window:
         photo.wants_picture = False
         size, s = self.device.size, self.session.strings
         factor = fine_factor(size, photo.fine)
-        view = replace(self._frame(), camera=photo.camera(), hud=None)
+        view = replace(self.frame(), camera=photo.camera(), hud=None)
         pixels = self.renderer.snapshot(view, (size[0] * factor, size[1] * factor))
         try:
             path = photo_path(photo_folder())
@@ -310,9 +310,9 @@ class Window:
             self._tick(None)  # a stall was just reached: nobody has moved there yet
         if self.photo is None:
             self._paint_pictures()
-        self.renderer.draw(self._frame())
+        self.renderer.draw(self.frame())
 
-    def _frame(self) -> FrameView:
+    def frame(self) -> FrameView:
         """The present moment as the renderer wants it."""
         session = self.session
         params = session.world.body.face_params

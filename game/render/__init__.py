@@ -1,6 +1,6 @@
 """Drawing: GL device, meshes on the GPU, toon passes, the baked scene, faces, text and interface."""
 
-from game.render.assets import load_character, load_picture, load_stall, save_png
+from game.render.assets import encode_picture, load_character, load_picture, load_stall, save_png
 from game.render.camera import CLOSEUP, HERO, Camera
 from game.render.crowd import CrowdLook, CrowdMesh, CrowdView, dressed, load_crowd_mesh
 from game.render.daylight import DESIGN_SHARE
@@ -42,6 +42,7 @@ __all__ = [
     "StaticMesh",
     "cut_item",
     "dressed",
+    "encode_picture",
     "ladder",
     "level_named",
     "load_character",

@@ -38,7 +38,7 @@ from game.render.weave import MOTIFS
 _MAX_BYTES, _MAX_PIXELS = 256_000_000, 128_000_000  # of a picture; 16 frames of 3840×2160 in a strip
 _LEG = re.compile(r"(Leg|Foot|Toes)$")  # joints whose vertices a table hides
 
-__all__ = ["character_parts", "load_character", "load_picture", "load_stall", "save_png"]
+__all__ = ["character_parts", "encode_picture", "load_character", "load_picture", "load_stall", "save_png"]
 
 
 def load_character(vrm: Path) -> CharacterModel:
@@ -124,12 +124,17 @@ def load_picture(path: Path) -> NDArray[np.uint8]:
 
 def save_png(path: Path, pixels: NDArray[np.uint8]) -> None:
     """Write (h, w, 3) uint8 pixels as a PNG file. Raises OSError where there is no room for it."""
+    path.write_bytes(encode_picture(pixels, "png"))
+
+
+def encode_picture(pixels: NDArray[np.uint8], kind: str) -> bytes:
+    """(h, w, 3) uint8 pixels as the bytes of a file: ``png``, or ``jpg`` for pages with many pictures."""
     height, width = pixels.shape[:2]
     surface = pygame.image.frombuffer(np.ascontiguousarray(pixels).tobytes(), (width, height), "RGB")
-    # SDL says nothing of a full disk: it only encodes, and the file is ours to write.
+    # SDL says nothing of a full disk: it only encodes, and the file is its caller's to write.
     encoded = io.BytesIO()
-    pygame.image.save(surface, encoded, "picture.png")
-    path.write_bytes(encoded.getbuffer())
+    pygame.image.save(surface, encoded, f"picture.{kind}")
+    return encoded.getvalue()
 
 
 def _mesh_nodes(file: GltfFile) -> Iterator[tuple[GltfNode, Mapping[str, Any]]]:

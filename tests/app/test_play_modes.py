@@ -61,7 +61,7 @@ def watch(device: Device, mode: str) -> Seen:
             rows.append((unit.copy(), unit == rest, body.face_signal.shown, body.pose.rotation[0].copy()))
     window.draw()
     played = window.renderer.read_pixels().astype(int)
-    window.renderer.draw(replace(window._frame(), show_face=False))
+    window.renderer.draw(replace(window.frame(), show_face=False))
     face_drawn = float(np.abs(window.renderer.read_pixels().astype(int) - played).max())
     window.close()
     return Seen(*(np.array(column) for column in zip(*rows, strict=True)), face_drawn=face_drawn)

@@ -79,7 +79,18 @@ def test_a_broken_stall_is_flagged_for_every_fault(
 ) -> None:
     # Nearer than any person could stand: the hands have no room.
     monkeypatch.setitem(SHOTS, "talk", replace(SHOTS["talk"], fov_deg=9.0))
-    words = ["crawl", str(broken), "--language", "en", "--seconds", "1", "--json", "--out", str(tmp_path)]
+    words = [
+        "crawl",
+        str(broken),
+        "--language",
+        "en",
+        "--seconds",
+        "1",
+        "--no-pixels",
+        "--json",
+        "--out",
+        str(tmp_path),
+    ]
     assert main(words) == 1
     told = json.loads(capsys.readouterr().out)["findings"]
     texts = [row for row in told if row["kind"] != "hands"]

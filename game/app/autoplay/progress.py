@@ -21,12 +21,13 @@ class Progress:
         total: int,
         done: int = 0,
         *,
+        what: str = "talks",
         show: bool | None = None,
         out: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.out = sys.stderr if out is None else out
-        self.total, self.done, self.clock = total, done, clock
+        self.total, self.done, self.what, self.clock = total, done, what, clock
         self.shown = self.out.isatty() if show is None else show
         self.begun_s, self.at_start = clock(), done
         self.last_s = -1e9
@@ -47,7 +48,7 @@ class Progress:
         share = self.done / max(self.total, 1)
         full = round(share * WIDTH)
         bar = "█" * full + "·" * (WIDTH - full)
-        return f"{bar} {share:4.0%}  {self.done:,}/{self.total:,} talks  {rate:,.0f}/s  {left} left "
+        return f"{bar} {share:4.0%}  {self.done:,}/{self.total:,} {self.what}  {rate:,.0f}/s  {left} left "
 
     def end(self) -> None:
         """Leave the line as it is."""

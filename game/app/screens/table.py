@@ -81,7 +81,7 @@ class TableScreen(MenuScreen):
         items = script.items
         closed = is_closed(session.market.bazaar, afternoon)
         left = canvas.width - 396
-        canvas.panel(Rect(left - 16, 24, 396, 104 + 66 * len(items) + 54), fade(PALETTE["shade"], 0.75), radius=22)
+        canvas.panel(Rect(left - 16, 24, 396, 104 + 66 * len(items) + 54), fade(PALETTE["shade"], 1.15), radius=22)
         canvas.text(left, 36, script.title.get(s.language), 23, PALETTE["white"], font="title")
         clock = session.market.bazaar.clock(afternoon.minutes)
         canvas.text(left + 364, 40, clock, 18, PALETTE["paper_warm"], font="bold", align="right")

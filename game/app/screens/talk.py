@@ -258,17 +258,19 @@ class TalkScreen:
         )
 
     def _tokens(self, session: Session, canvas: Canvas) -> list[Button]:
-        """The seven tokens above the subtitles; laying one costs nothing."""
-        s, size = session.strings, 34.0
+        """The seven tokens, in a column at the left: the hands rest above the words, and they are what is to be read.
+        Laying one costs nothing."""
+        s, size, step = session.strings, 34.0, 42.0
         words = s(self._guess) if self._guess else s("token_hint")
-        label = canvas.measure(words, 15) + 20
-        width = 7 * (size + 8) + label + 14
-        left, y = 20 + (canvas.width - card_width(canvas) - 60 - width) / 2, canvas.height - 90.0 - words_height(canvas)
-        canvas.panel(Rect(left, y, width, size + 14), fade(PALETTE["shade"], 0.95), radius=24)
-        canvas.text(left + 20, y + 13, words, 15, PALETTE["white"])
-        x = left + label + 14
+        height = len(EMOTIONS) * step + 6.0
+        left, top = 20.0, canvas.height - 54.0 - words_height(canvas) - height
+        label = Rect(left, top - 38.0, canvas.measure(words, 15) + 28.0, 32.0)
+        canvas.panel(label, fade(PALETTE["shade"], 1.2), radius=16)
+        canvas.text(label.x + 14, label.y + 6, words, 15, PALETTE["white"])
+        canvas.panel(Rect(left, top, size + 14, height), fade(PALETTE["shade"], 0.95), radius=24)
         return [
-            Button(f"token:{name}", "", Rect(x + i * (size + 8), y + 7, size, size)) for i, name in enumerate(EMOTIONS)
+            Button(f"token:{name}", "", Rect(left + 7, top + 7 + i * step, size, size))
+            for i, name in enumerate(EMOTIONS)
         ]
 
     def _paint(self, canvas: Canvas, button: Button, focused: bool) -> None:

@@ -45,7 +45,7 @@ class TitleScreen(MenuScreen):
     def draw(self, session: Session, canvas: Canvas) -> None:
         s = session.strings
         left, width = 64.0, 320.0
-        canvas.panel(Rect(40, 140, 470, 168), fade(PALETTE["shade"], 0.9), radius=26)
+        canvas.panel(Rect(40, 140, 470, 168), fade(PALETTE["shade"], 1.2), radius=26)
         title = s("title")
         rows = title.rsplit(" ", 1) if " " in title else [title]
         size = 48.0

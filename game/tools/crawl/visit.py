@@ -21,7 +21,7 @@ from game.story import STANDING_ACTS, Beat, Spoken, rehearse_choice, rehearse_li
 from game.story import Choice as StoryChoice
 from game.tools.crawl.paper import Box, Fault, PaperCanvas, PaperHud
 
-__all__ = ["Finding", "Look", "beats_of", "crawl_stall"]
+__all__ = ["Finding", "Look", "beats_of", "crawl_stall", "session_of"]
 
 SEEDS = 8
 """Pools are drawn: so many draws are tried to see every choice of a node."""
@@ -59,7 +59,7 @@ def crawl_stall(stall: str, languages: Iterable[str], scales: Iterable[float] = 
         fonts = FontSet.for_language(language)
         for scale in scales:
             look = Look(language, scale)
-            session = _session(assets, look)
+            session = session_of(assets, look)
             for node, screen, world in _pictures(session, nodes):
                 session.world = world
                 hud = PaperHud(fonts)
@@ -71,7 +71,8 @@ def crawl_stall(stall: str, languages: Iterable[str], scales: Iterable[float] = 
     return list(found.values()), count
 
 
-def _session(assets: StepAssets, look: Look) -> Session:
+def session_of(assets: StepAssets, look: Look) -> Session:
+    """A day that has just begun at a stall, seen in one language and size of text; nothing of it is ever saved."""
     world = new_world(assets, 1, language=look.language)
     settings = Settings(language=look.language, ui_scale=look.scale)
     session = Session(assets, world, load_strings(look.language), settings, Afternoon(1), Market.single(assets))
