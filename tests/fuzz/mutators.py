@@ -27,6 +27,8 @@ EDGES: tuple[Any, ...] = (
     1e-320, 1e308, float("inf"), float("nan"), "", " ", "0", "nan", "\x00", "\ud7ff", "\u202e", "../../etc/passwd",
     "/dev/zero", "data:;base64,AA==", "{{", "{x}", "__class__", "a" * 5000, [], {}, [[]], {"": ""},
 )  # fmt: skip
+MULTIPLIED = 2000
+"""Only what is written in fewer characters is repeated: what is repeated again and again has no end."""
 WORD = re.compile(r"\S+")
 
 
@@ -47,19 +49,24 @@ def _places(tree: Any, found: list[tuple[Any, Any]]) -> list[tuple[Any, Any]]:
 
 
 def _copy(value: Any) -> Any:
+    """Of its own, so that no later change reaches the original."""
     return json.loads(json.dumps(value)) if isinstance(value, dict | list) else value
+
+
+def _small(value: Any) -> bool:
+    return len(json.dumps(value)) < MULTIPLIED
 
 
 def _change_tree(tree: Any, rng: random.Random) -> Any:
     for _ in range(rng.choice((1, 1, 1, 2, 4))):
         places = _places(tree, [])
         if not places:
-            return rng.choice(EDGES)
+            return _copy(rng.choice(EDGES))
         holder, key = rng.choice(places)
         value = holder[key]
         kind = rng.randrange(8)
         if kind == 0:
-            holder[key] = rng.choice(EDGES)
+            holder[key] = _copy(rng.choice(EDGES))
         elif kind == 1:  # a reference that goes elsewhere, a part in another's place
             other, at = rng.choice(places)
             same = [(h, k) for h, k in places if type(h[k]) is type(value)]
@@ -68,15 +75,15 @@ def _change_tree(tree: Any, rng: random.Random) -> Any:
         elif kind == 2:
             del holder[key]
         elif kind == 3 and isinstance(value, int | float) and not isinstance(value, bool):
-            holder[key] = rng.choice((value + 1, value - 1, -value, value * 2, value * 1e9, int(value) << 40))
-        elif kind == 4 and isinstance(value, str) and value:
+            holder[key] = rng.choice((value + 1, value - 1, -value, value * 2, value * 1e9, value * 2**40))
+        elif kind == 4 and isinstance(value, str) and value and _small(value):
             at = rng.randrange(len(value))
             holder[key] = rng.choice((value[:at], value[at:], value * 3, value[:at] + value, value.swapcase()))
         elif kind == 5 and isinstance(holder, dict):
             names = [k for h, k in places if isinstance(h, dict)]
             holder[rng.choice(names)] = holder.pop(key)
-        elif kind == 6 and isinstance(value, list) and value:
-            holder[key] = rng.choice((value * 3, value[::-1], value[:1] * 200, value[: len(value) // 2]))
+        elif kind == 6 and isinstance(value, list) and value and _small(value):
+            holder[key] = _copy(rng.choice((value * 3, value[::-1], value[:1] * 200, value[: len(value) // 2])))
         else:
             holder[key] = _nested(rng.choice((1, 3, 70, 300)))
     return tree
