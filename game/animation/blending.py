@@ -18,10 +18,10 @@ from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation.collision import TABLE_BACK_Z_M
 from game.animation.motion_bank import MotionBank
-from game.animation.playback import Layered, Playback, of_some
+from game.animation.playback import Layered, Playback, of_some, speeds
 from game.core.humanoid import TABLE_TOP_M
 
-__all__ = ["Blend", "advance_blend", "compose", "start_blend", "switch"]
+__all__ = ["Blend", "advance_blend", "compose", "shown_speed", "start_blend", "switch"]
 
 Floats = NDArray[np.floating[Any]]
 Bools = NDArray[np.bool_]
@@ -45,12 +45,22 @@ EDGE_LIFT_M, EDGE_CLEAR_M = 0.05, 0.13
 """Between below and above the table a hand goes round its edge: it bows up by this and what it lacks of this height."""
 ARM_M = 0.42
 
-# Polynomials in u of the two curves and of their slopes (_add_remains): coefficients by (power, 0 | slope, curve).
-_CURVES = np.array([[[1, 0], [0, 1]], [[3, 1], [0, 2]], [[6, 3], [-30, -15]]], dtype=np.float32)[..., None, None]
-_CURVES.setflags(write=False)
 
+def _shapes() -> Floats:
+    """(2, 4, 3, 1, PARTS): coefficients of v⁰ … v³ in the three curves (_add_remains) and in their slopes."""
+    curves = np.array([[10, 4, 64], [-15, -7, -192], [6, 3, 192], [0, 0, -64]], dtype=np.float32)
+    slopes = curves * -np.arange(3, 7, dtype=np.float32)[:, None]
+    both = np.stack([curves, slopes])[..., None, None]
+    both = np.ascontiguousarray(np.broadcast_to(both, (2, 4, 3, 1, len(ch.PARTS))))
+    both.setflags(write=False)
+    return both
+
+
+_CURVES, _SLOPES = _shapes()
 _TOUCHED = np.array([part in ("spine", "head", "left_arm", "right_arm") for part in ch.PARTS])
 _TOUCHED.setflags(write=False)
+_NONE = np.zeros((), dtype=np.float32)
+_NONE.setflags(write=False)
 _PART_JOINTS = tuple(np.flatnonzero(p == ch.PART_OF_JOINT) for p in range(len(ch.PARTS)))
 _ARMS = [ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm")]
 
@@ -59,28 +69,29 @@ _ARMS = [ch.PARTS.index("left_arm"), ch.PARTS.index("right_arm")]
 class Source:
     """What n characters' rows are made of since their last switch. gate: (n, L, CHANNELS) share of each layer. owned:
     (n, L, PARTS) what each layer's unit owns. frame: (n, 2) contact frame of the hands. attention: (n,) 0 where a unit
-    moves the gaze itself, else 1. offset: (2, n, CHANNELS) how far what was shown lay from what was wanted, and how
-    much faster it moved, the latter times brake_s. arc: (n, 2, 3) how far the hands' ways bow, metres in their contact
-    frames. ends_s: (2, n, PARTS) how long offset and speed take to vanish (span and brake)."""
+    moves the gaze itself, else 1. remains: (3, n, CHANNELS) how far what was shown lay from what was wanted, how much
+    faster it moved, the latter times its brake, and how far the hands' ways bow in their contact frames. pace: (3, n,
+    PARTS) what of them dies away per second: 1 / span, 1 / brake, 1 / span."""
 
     gate: Floats
     owned: Bools
     frame: NDArray[np.intp]
     attention: Floats
-    offset: Floats
-    arc: Floats
-    ends_s: Floats
+    remains: Floats
+    pace: Floats
 
 
 @dataclass(frozen=True, eq=False)
 class Blend:
-    """n characters. age_s: (n, PARTS) since the last switch. row, speed: (n, CHANNELS) shown at the last tick.
+    """n characters. left: (3, n, PARTS) of the transitions 1 when they begin .. 0; busy_s: until the last of them ends.
+    row: (n, CHANNELS) shown at the last tick. speed: how fast that changed, where it does not follow from the rest.
     known: False before the first."""
 
     source: Source
-    age_s: Floats
+    left: Floats
+    busy_s: float
     row: Floats
-    speed: Floats
+    speed: Floats | None = None
     known: bool = True
 
 
@@ -92,30 +103,44 @@ def start_blend(n: int, layers: int) -> Blend:
         owned=np.zeros((n, layers, parts), dtype=bool),
         frame=np.zeros((n, 2), dtype=np.intp),
         attention=np.ones(n),
-        offset=np.zeros((2, n, ch.CHANNELS), dtype=np.float32),
-        arc=np.zeros((n, 2, 3), dtype=np.float32),
-        ends_s=np.ones((2, n, parts), dtype=np.float32),
+        remains=np.zeros((3, n, ch.CHANNELS), dtype=np.float32),
+        pace=np.ones((3, n, parts), dtype=np.float32),
     )
-    zero = np.zeros((n, ch.CHANNELS), dtype=np.float32)
-    return Blend(source, np.ones((n, parts), dtype=np.float32), zero, zero, known=False)
+    left, row = np.zeros((3, n, parts), dtype=np.float32), np.zeros((n, ch.CHANNELS), dtype=np.float32)
+    return Blend(source, left, 0.0, row, known=False)
 
 
-def compose(values: Layered, gate: Floats) -> tuple[Floats, Floats]:
-    """What the layers say through their gates (n, L, CHANNELS): the wanted row and its change per second, (n, CHANNELS)
-    each."""
+def compose(values: Layered, gate: Floats) -> Floats:
+    """What the layers say through their gates (n, L, CHANNELS), together (n, CHANNELS)."""
     layer, _, value = values[0]
-    both = value * gate[:, layer, None]
+    row = value * gate[:, layer]
     for layer, who, value in values[1:]:
         if who is None:
-            both += value * gate[:, layer, None]
+            value *= gate[:, layer]
+            row += value
         else:
-            both[who] += value * gate[who, layer, None]
-    return both[:, 0], both[:, 1]
+            row[who] += value * gate[who, layer]
+    return row
+
+
+def shown_speed(bank: MotionBank, state: Blend, playback: Playback, posture_layer: int) -> Floats:
+    """(n, CHANNELS) how fast the row last shown was changing, per second; playback: as it was at that tick."""
+    if state.speed is not None:
+        return state.speed
+    if not state.known:
+        return np.zeros_like(state.row)
+    speed = compose(speeds(bank, playback, posture_layer), state.source.gate)
+    if state.busy_s > 0.0:
+        square = state.left * state.left
+        square *= state.source.pace
+        _add_remains(state.source, square, _polynomial(_SLOPES, state.left), speed)
+    return speed
 
 
 def switch(
     bank: MotionBank,
     state: Blend,
+    before: Playback,
     playback: Playback,
     events: Bools,
     values: Layered,
@@ -125,14 +150,18 @@ def switch(
     posture_layer: int,
     dt_s: float,
 ) -> Blend:
-    """Take up new sources. events: (n, L) layers whose source jumped; base_s: (n,) length of a middling transition;
-    arc: (n,) bow of the hands' ways; contact_frames: (n, 4, 4, 4) matrices of CONTACT_FRAMES as last shown."""
+    """Take up new sources. before, playback: at the last tick and now; events: (n, L) layers whose source jumped;
+    base_s: (n,) length of a middling transition; arc: (n,) bow of the hands' ways; contact_frames: (n, 4, 4, 4)
+    matrices of CONTACT_FRAMES as last shown."""
     who = np.flatnonzero(events.any(axis=1))
     if len(who) == len(events):
-        return _switched(bank, state, playback, events, values, base_s, arc, contact_frames, posture_layer, dt_s)
+        return _switched(
+            bank, state, before, playback, events, values, base_s, arc, contact_frames, posture_layer, dt_s
+        )
     some = _switched(
         bank,
         _some(state, who),
+        before.of(who),
         playback.of(who),
         events[who],
         of_some(values, who, len(events)),
@@ -142,27 +171,29 @@ def switch(
         posture_layer,
         dt_s,
     )
-    source, age_s = {}, state.age_s.copy()
+    source, left = {}, state.left.copy()
     for name, old in vars(state.source).items():
         source[name] = old.copy()
         source[name][_at(name, who)] = getattr(some.source, name)
-    age_s[who] = some.age_s
-    return replace(state, source=Source(**source), age_s=age_s)
+    left[:, who] = some.left
+    return replace(state, source=Source(**source), left=left, busy_s=max(state.busy_s, some.busy_s))
 
 
 def _at(name: str, who: NDArray[np.intp]) -> Any:
     """Where characters stand in an array of Source."""
-    return (slice(None), who) if name in ("offset", "ends_s") else who
+    return (slice(None), who) if name in ("remains", "pace") else who
 
 
 def _some(state: Blend, who: NDArray[np.intp]) -> Blend:
     source = Source(**{name: array[_at(name, who)] for name, array in vars(state.source).items()})
-    return Blend(source, state.age_s[who], state.row[who], state.speed[who], state.known)
+    speed = None if state.speed is None else state.speed[who]
+    return Blend(source, state.left[:, who], state.busy_s, state.row[who], speed, state.known)
 
 
 def _switched(
     bank: MotionBank,
     state: Blend,
+    before: Playback,
     playback: Playback,
     events: Bools,
     values: Layered,
@@ -182,8 +213,10 @@ def _switched(
         return replace(state, source=source)
     touched = owned | old.owned | (_TOUCHED & (np.arange(layers) != posture_layer)[:, None])
     fresh = (touched & events[:, :, None]).any(axis=1)
-    goal, goal_speed = compose(values, gate)
-    row, speed = _in_frames(state.row, state.speed, old.frame, frame, contact_frames)
+    goal = compose([(layer, some, value.copy()) for layer, some, value in values], gate)
+    goal_speed = compose(speeds(bank, playback, posture_layer), gate)
+    speed = shown_speed(bank, state, before, posture_layer)
+    row, speed = _in_frames(state.row, speed, old.frame, frame, contact_frames)
     row = row + speed * np.float32(dt_s)
     row, speed = _same_side(row, speed, goal)
     offset, offset_speed = row - goal, speed - goal_speed
@@ -193,48 +226,55 @@ def _switched(
     span = np.minimum(span, _until_stroke(bank, playback, owned))
     brake = np.minimum(_brakes(offset_speed), span)
     offset_speed *= brake[:, ch.PART_OF_CHANNEL]
+    bows = np.zeros_like(offset)
+    bows[:, ch.WRIST] = arcs.reshape(len(row), -1)
+    now = fresh[:, ch.PART_OF_CHANNEL]
     source = replace(
         source,
-        offset=np.where(fresh[:, ch.PART_OF_CHANNEL], np.stack([offset, offset_speed]), old.offset),
-        arc=np.where(fresh[:, _ARMS, None], arcs, old.arc),
-        ends_s=np.where(fresh, np.stack([span, brake]), old.ends_s),
+        remains=np.where(now, np.stack([offset, offset_speed, bows]), old.remains),
+        pace=np.where(fresh, 1.0 / np.stack([span, brake, span]), old.pace),
     )
-    return replace(state, source=source, age_s=np.where(fresh, 0.0, state.age_s))
+    # The tick that comes now takes its share of what is left: it shows the beginning.
+    left = np.where(fresh, 1.0 + source.pace * np.float32(dt_s), state.left)
+    return replace(state, source=source, left=left, busy_s=max(state.busy_s, float(span.max()) + 2.0 * dt_s))
 
 
 def advance_blend(state: Blend, values: Layered, dt_s: float) -> Blend:
     """The row now shown, the transitions' remains included."""
-    source, age = state.source, state.age_s
-    row, speed = compose(values, source.gate)
-    if np.count_nonzero(age < source.ends_s[0]):
-        _add_remains(source, age, row, speed)
-    return Blend(source, age + dt_s, row, speed)
+    row = compose(values, state.source.gate)
+    if state.busy_s <= 0.0:
+        return Blend(state.source, state.left, 0.0, row)
+    left = state.left - state.source.pace * np.float32(dt_s)
+    np.maximum(left, _NONE, out=left)
+    cube = left * left
+    cube *= left
+    _add_remains(state.source, cube, _polynomial(_CURVES, left), row)
+    return Blend(state.source, left, state.busy_s - dt_s, row)
 
 
-def _add_remains(source: Source, age_s: Floats, row: Floats, speed: Floats) -> None:
-    """What is left of the transitions, added to row and speed.
+def _polynomial(shapes: Floats, left: Floats) -> Floats:
+    """shapes: (4, 3, 1, PARTS) coefficients; left: (3, n, PARTS) -> (3, n, PARTS)."""
+    lowest, linear, square, cubic = shapes
+    sums = cubic * left
+    for coefficient in (square, linear):
+        sums += coefficient
+        sums *= left
+    sums += lowest
+    return np.asarray(sums)
 
-    Quintic Hermite curves on u in [0, 1], v = 1 − u: value 1 → 0 is v³·(1 + 3u + 6u²), slope 1 → 0 is v³·(u + 3u²);
-    whatever else they have vanishes at both ends. Their slopes are −30·u²v² and v²·(1 + 2u − 15u²).
+
+def _add_remains(source: Source, power: Floats, curve: Floats, shown: Floats) -> None:
+    """Add what is left of the transitions to shown.
+
+    With v in [1, 0] what is left of their time and u = 1 − v: quintic Hermite curves of value 1 → 0,
+    v³·(1 + 3u + 6u²), and of slope 1 → 0, v³·(u + 3u²), which have no speed and acceleration but this at either end;
+    and for the hands' bows a bump of height 1 with neither, 64·u³v³. power: v³, or v² of their slopes.
     """
-    u = np.minimum(age_s / source.ends_s, 1.0)
-    v = 1.0 - u
-    square = v * v
-    curves = _CURVES[0] + u * (_CURVES[1] + u * _CURVES[2])
-    curves[0] *= square * v
-    curves[1] *= square / source.ends_s
-    remains = curves.take(ch.PART_OF_CHANNEL, axis=-1)
-    remains *= source.offset
-    for shown, (of_offset, of_speed) in ((row, remains[0]), (speed, remains[1])):
-        shown += of_offset
-        shown += of_speed
-    # The hands' arcs: a bump that starts and ends with no speed and no acceleration.
-    u, v = u[0].take(_ARMS, axis=-1), v[0].take(_ARMS, axis=-1)
-    rest = u * v
-    square = rest * rest
-    height, slope = 64.0 * square * rest, 192.0 * square * (v - u) / source.ends_s[0].take(_ARMS, axis=-1)
-    row[:, ch.WRIST] += (source.arc * height[..., None]).reshape(-1, 6)
-    speed[:, ch.WRIST] += (source.arc * slope[..., None]).reshape(-1, 6)
+    curve *= power
+    remains = curve.take(ch.PART_OF_CHANNEL, axis=-1)
+    remains *= source.remains
+    for part in remains:
+        shown += part
 
 
 def _gates(bank: MotionBank, playback: Playback, owned: Bools, posture_layer: int) -> tuple[Floats, NDArray[np.intp]]:

@@ -25,6 +25,8 @@ ADDITIVE_SHARE = 0.7
 """How much of a unit's torso and head movement shows where it does not own torso and head."""
 
 _ABSENT = -1e4
+_STEEP = 0.15
+"""Below this radius exp(±1 / r²) comes near the ends of float32."""
 _POSTURE_MIN_FRAMES = 8
 
 Ints = NDArray[np.int32]
@@ -41,9 +43,9 @@ class MotionBank:
     count: (U, 7) variants, 0 where none. before_s, after_s: (U, 7, V) natural seconds before and after the
     stroke; mannerisms have everything after. stroke: (U,) frame of the stroke. loop_first, loop_frames: (U,)
     stretch that repeats (0 frames: none). owned: (U, PARTS) bool. frame: (U, 2) index into CONTACT_FRAMES.
-    looks: (U,) True where the unit moves
-    the gaze itself. mix_slope, mix_level: (U, 7), eq. 5's exponent is
-    slope·i' + level. neutral_posture: the unit shown when the body must say nothing.
+    looks: (U,) True where the unit moves the gaze itself. mix_slope, mix_level: (U, 7), eq. 5's exponent is
+    slope·i' + level; steep: True where that may leave float32's range. neutral_posture: the unit shown when the body
+    must say nothing.
     """
 
     rows: Floats
@@ -60,6 +62,7 @@ class MotionBank:
     looks: Bools
     mix_slope: Floats
     mix_level: Floats
+    steep: bool
     neutral_posture: int
     rest: Ints
 
@@ -146,6 +149,7 @@ def bake(
         looks=np.array([bool({"gaze"} & (u.uses | u.locks)) for u in units]),
         mix_slope=(2.0 * library.intensity / radius**2).astype(np.float32),
         mix_level=np.where(count > 0, -((library.intensity / radius) ** 2), _ABSENT).astype(np.float32),
+        steep=radius < _STEEP,
         neutral_posture=_neutral_posture(library),
         rest=np.array([_rest(library, layer) for layer in layers], dtype=np.int32),
     )

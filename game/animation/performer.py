@@ -111,12 +111,14 @@ class Performer:
             push=np.zeros((n, 2, 2, 3), dtype=np.float32),
         )
 
-    def adopt(self, state: PerformerState) -> PerformerState:
-        """Characters who moved by another repertoire, before their next tick: they go on from where they are."""
+    def adopt(self, state: PerformerState, before: Performer) -> PerformerState:
+        """Characters who moved by the repertoire of another performer, before their next tick: they go on from where
+        they are, as fast as they were."""
         n, layers = state.playback.unit.shape
         if layers != len(self.layers):
             return replace(self.start(n), life=state.life, gaze=state.gaze)
-        return replace(state, playback=playback.start(n, layers))
+        speed = blending.shown_speed(before.bank, state.blend, state.playback, before._posture)
+        return replace(state, playback=playback.start(n, layers), blend=replace(state.blend, speed=speed))
 
     def advance(
         self, state: PerformerState, decisions: Decisions, signal: PerformSignal, dt_s: float
@@ -170,7 +172,8 @@ class Performer:
         if events is not None and np.count_nonzero(events):
             frames = state.matrices.take(contacts.FRAMES, axis=1)
             base_s, arc = self.life.transition_s * (emotion @ self.life.tempo), emotion @ self.life.arc
-            blend = blending.switch(self.bank, blend, play, events, values, base_s, arc, frames, self._posture, dt_s)
+            was, at = state.playback, self._posture
+            blend = blending.switch(self.bank, blend, was, play, events, values, base_s, arc, frames, at, dt_s)
         return play, blending.advance_blend(blend, values, dt_s)
 
     def _neutral_weights(self, layer: int) -> Floats:

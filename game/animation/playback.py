@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from game.animation.motion_bank import FPS, MotionBank
 
-__all__ = ["Layered", "Playback", "advance_playback", "begin", "of_some", "start"]
+__all__ = ["Layered", "Playback", "Stretch", "advance_playback", "begin", "of_some", "speeds", "start"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]
@@ -28,13 +29,20 @@ LEAST_WEIGHT = 0.02
 """Variants below this share are left out; it is subtracted first, so nothing jumps when one comes in."""
 PRUNE_FROM = 8
 """From this many characters on it pays to gather only the variants in use."""
+PIECE = 32
+"""Characters whose rows are gathered at a time: what is mixed next is still in the cache."""
+EARLY_S = 1e-4
+"""A stretch of even pace is left this long before its end, so that rounding never makes it last too long."""
 
-_THIS_AND_NEXT = np.array([[0], [1]], dtype=np.int32)
-_THIS_AND_NEXT.setflags(write=False)
+_THIS_AND_NEXT = np.array([[0], [1]])
+_SUM = np.ones((7, 7), dtype=np.float32)
+_NONE, _LEAST = np.zeros((), dtype=np.float32), np.array(LEAST_WEIGHT, dtype=np.float32)
+for _table in (_THIS_AND_NEXT, _SUM, _NONE, _LEAST):
+    _table.setflags(write=False)
 
 Layered = list[tuple[int, Ints | None, Floats]]
-"""What layers say: layer, the characters in whom it runs (None: all), and for them values and their change per second
-(m, 2, CHANNELS). The posture's comes first."""
+"""What layers say: layer, the characters in whom it runs (None: all), and for them (m, CHANNELS). The posture's comes
+first."""
 
 
 # Rows of Playback.timing.
@@ -53,6 +61,20 @@ Layered = list[tuple[int, Ints | None, Floats]]
 
 
 @dataclass(frozen=True, eq=False)
+class Stretch:
+    """Where n characters' units stand while they go on at an even pace: frame = elapsed_s·rate + base.
+
+    rate: (n, L) frames per second; base: (n, L); wrapped: (n, L, 7) frames of the loops that are over; until_s: (n, L)
+    the pace, a loop or the unit ends then (−∞: not known yet).
+    """
+
+    rate: Floats
+    base: Floats
+    wrapped: Floats
+    until_s: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class Playback:
     """n characters, L layers.
 
@@ -61,11 +83,11 @@ class Playback:
     which drift; the others' as they are mixed. timing: (10, n, L) second of the stroke, frames per second before and
     after it, first frame, length and added frames of a stretched middle, first frame, frames and times of a repeated
     one, last frame. elapsed_s: (n, L) since the unit started (a posture: position in its loops). lap: (n, L) repeats
-    already made. active: (n, L) False once a unit has played to its end.
+    already made. active: (n, L) False once a unit has played to its end. index: (n, L, 7) rows last shown.
     """
 
     unit: Ints
-    first: NDArray[np.int32]
+    first: Floats
     lap_frames: Floats
     before_last: Floats
     weight: Floats
@@ -73,6 +95,8 @@ class Playback:
     elapsed_s: Floats
     lap: Floats
     active: Bools
+    stretch: Stretch
+    index: Ints
 
     @property
     def to_stroke_s(self) -> Floats:
@@ -81,8 +105,12 @@ class Playback:
 
     def of(self, who: Ints) -> Playback:
         """Some of the characters."""
-        arrays = {name: array[:, who] if name == "timing" else array[who] for name, array in vars(self).items()}
-        return Playback(**arrays)
+        arrays = {name: array[:, who] if name == "timing" else array[who] for name, array in _arrays(self)}
+        return Playback(**arrays, stretch=Stretch(**{name: array[who] for name, array in _arrays(self.stretch)}))
+
+
+def _arrays(state: Playback | Stretch) -> list[tuple[str, NDArray[Any]]]:
+    return [(name, value) for name, value in vars(state).items() if isinstance(value, np.ndarray)]
 
 
 def of_some(values: Layered, who: Ints, n: int) -> Layered:
@@ -104,7 +132,7 @@ def start(n: int, layers: int) -> Playback:
     shape = (n, layers)
     return Playback(
         unit=np.full(shape, -1, dtype=np.intp),
-        first=np.zeros((*shape, 7), dtype=np.int32),
+        first=np.zeros((*shape, 7), dtype=np.float32),
         lap_frames=np.ones((*shape, 7), dtype=np.float32),
         before_last=np.zeros((*shape, 7), dtype=np.float32),
         weight=np.zeros((*shape, 7), dtype=np.float32),
@@ -112,6 +140,13 @@ def start(n: int, layers: int) -> Playback:
         elapsed_s=np.zeros(shape, dtype=np.float32),
         lap=np.zeros(shape, dtype=np.float32),
         active=np.zeros(shape, dtype=bool),
+        stretch=Stretch(
+            rate=np.zeros(shape, dtype=np.float32),
+            base=np.zeros(shape, dtype=np.float32),
+            wrapped=np.zeros((*shape, 7), dtype=np.float32),
+            until_s=np.full(shape, -np.inf, dtype=np.float32),
+        ),
+        index=np.zeros((*shape, 7), dtype=np.intp),
     )
 
 
@@ -179,34 +214,49 @@ def begin(
         elapsed_s=put(state.elapsed_s, phase - dt_s),
         lap=put(state.lap, 0.0),
         active=put(state.active, bank.count[u].any(axis=-1)),
+        stretch=replace(state.stretch, until_s=put(state.stretch.until_s, -np.inf)),
+        index=state.index,
     )
 
 
 def _shares(weight: Floats) -> Floats:
     """Weights (..., 7) as they are mixed: the least left out, the sum 1."""
-    shares = np.maximum(weight - LEAST_WEIGHT, 0.0)
-    shares /= np.maximum(np.add.reduce(shares, axis=-1, keepdims=True), 1e-9)
+    shares = weight - _LEAST
+    np.maximum(shares, _NONE, out=shares)
+    total = shares @ _SUM
+    # All are at most the least only where there is no variant at all.
+    shares /= np.maximum(total, _LEAST, out=total)
     return np.asarray(shares)
 
 
-def _drifted(bank: MotionBank, weight: Floats, unit: Ints, emotion: Floats, dt_s: float) -> Floats:
+def _drifted(bank: MotionBank, weight: Floats, unit: Ints, emotion: Floats, gain: Floats) -> Floats:
     """The held postures' weights (n, 7) drawn toward the present emotion's mix, slowly enough never to flicker.
 
     Eq. 5's exponent is −(|i'|² − 2·i'_k·i_k + i_k²)/r²; what is the same for all k cancels in the shares.
     """
-    goal = emotion.astype(np.float32) * bank.mix_slope.take(unit, axis=0)
+    goal = bank.mix_slope.take(unit, axis=0)
+    goal *= emotion.astype(np.float32)
     goal += bank.mix_level.take(unit, axis=0)
-    goal -= np.maximum.reduce(goal, axis=1, keepdims=True)
+    if bank.steep:
+        goal -= np.maximum.reduce(goal, axis=1, keepdims=True)
     np.exp(goal, out=goal)
-    goal /= np.add.reduce(goal, axis=1, keepdims=True)
+    goal /= goal @ _SUM
     goal -= weight
-    goal *= 1.0 - 2.0 ** (-dt_s / DRIFT_HALF_LIFE_S)
+    goal *= gain
     goal += weight
-    return np.asarray(goal)
+    return goal
 
 
-def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats]:
-    """Frame (n, L) a unit has come to, frames per second there, and the repeats made so far."""
+@lru_cache(maxsize=16)
+def _step(dt_s: float) -> tuple[Floats, Floats]:
+    """A tick's length and how far a posture's weights drift in it, as arrays: NumPy is slower with Python's numbers."""
+    made = np.array([dt_s, 1.0 - 2.0 ** (-dt_s / DRIFT_HALF_LIFE_S)], dtype=np.float32)
+    made.setflags(write=False)
+    return made[0, ...], made[1, ...]
+
+
+def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats, Bools]:
+    """Frame (n, L) a unit has come to, frames per second there, the repeats made so far, and whether it is held."""
     before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times, _ = state.timing
     past = elapsed_s - before
     at = np.minimum(elapsed_s, before) * lead
@@ -216,12 +266,25 @@ def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats]
     if np.count_nonzero(times):
         lap = np.clip(np.floor((at - loop_first) / np.maximum(loop_frames, 1.0)), 0.0, times)
         at -= lap * loop_frames
-    if np.count_nonzero(held):
+    within = held > 0.0
+    if np.count_nonzero(within):
         length = np.maximum(hold_length, 1e-6)
-        u = (2.0 * np.pi) * np.minimum(np.maximum((at - hold_first) / length, 0.0), 1.0)
+        share = (at - hold_first) / length
+        within &= (share > 0.0) & (share < 1.0)
+        u = (2.0 * np.pi) * np.minimum(np.maximum(share, 0.0), 1.0)
         at -= held * (u - np.sin(u)) * (0.5 / np.pi)
         rate = rate * (1.0 - held / length * (1.0 - np.cos(u)))
-    return at, rate, lap
+    return at, rate, lap, within
+
+
+def _until(state: Playback, elapsed_s: Floats, at: Floats, rate: Floats, lap: Floats, wrapped: Floats) -> Floats:
+    """(n, L) when the even pace of units that are not held ends."""
+    before, _, _, hold_first, _, held, loop_first, loop_frames, times, last = state.timing
+    ahead = np.where((held > 0.0) & (at < hold_first), hold_first, last)
+    ahead = np.where(lap < times, np.minimum(ahead, loop_first + loop_frames), ahead)
+    ahead = np.minimum(ahead, (wrapped + state.lap_frames).min(axis=-1))
+    until = elapsed_s + (ahead - at) / np.maximum(rate, 1e-6)
+    return np.asarray(np.where(elapsed_s < before, np.minimum(until, before), until)) - np.float32(EARLY_S)
 
 
 def advance_playback(
@@ -232,65 +295,94 @@ def advance_playback(
     -> what the running layers say; the state; jumped (n, L): True where a unit went back to repeat its middle, or came
     to its end, None where none did.
     """
-    elapsed = state.elapsed_s + dt_s
-    at, rate, lap = _played(state, elapsed)
-    last, active, jumped = state.timing[_LAST], state.active, None
-    ended = active & (at >= last)
-    if np.count_nonzero(ended):
-        active, jumped = active & ~ended, ended
-    if lap is not state.lap:
-        jumped = ended | (lap != state.lap)
-    mixed = state.weight.copy()
-    drifted = _drifted(bank, mixed[:, posture_layer], state.unit[:, posture_layer], emotion, dt_s)
-    weight = mixed.copy()
+    step, gain = _step(dt_s)
+    elapsed, stretch = state.elapsed_s + step, state.stretch
+    active, lap, jumped = state.active, state.lap, None
+    if np.count_nonzero(elapsed >= stretch.until_s):
+        at, rate, lap, held = _played(state, elapsed)
+        last = state.timing[_LAST]
+        ended = active & (at >= last)
+        if np.count_nonzero(ended):
+            active, jumped = active & ~ended, ended
+        if lap is not state.lap:
+            jumped = ended | (lap != state.lap)
+        at = np.minimum(at, last)
+        frame = np.fmod(at[:, :, None], state.lap_frames)
+        wrapped = at[:, :, None] - frame
+        until = np.where(held, -np.inf, _until(state, elapsed, at, rate, lap, wrapped))
+        until = np.where(active, until, np.inf).astype(np.float32)
+        stretch = Stretch(rate, at - elapsed * rate, wrapped, until)
+    else:
+        at = elapsed * stretch.rate
+        at += stretch.base
+        frame = at[:, :, None] - stretch.wrapped
+    weight, mixed = state.weight.copy(), state.weight.copy()
+    drifted = _drifted(bank, weight[:, posture_layer], state.unit[:, posture_layer], emotion, gain)
     weight[:, posture_layer] = drifted
     mixed[:, posture_layer] = _shares(drifted)
     # Where every variant is in its clip: the frame before and the share of the way to the next.
-    frame = np.fmod(np.minimum(at, last)[:, :, None], state.lap_frames)
-    low = np.minimum(frame, state.before_last).astype(np.int32)
-    part = frame - low
+    low = np.trunc(frame)
+    np.minimum(low, state.before_last, out=low)
+    frame -= low
     low += state.first
-    layers = [posture_layer, *(k for k in range(at.shape[1]) if k != posture_layer)]
-    values = _mixed(bank, low, mixed, part, rate, active, layers)
+    index = low.astype(np.intp)
+    mix = np.empty((*weight.shape[:2], 2, 7), dtype=np.float32)
+    after = np.multiply(mixed, frame, out=mix[:, :, 1])
+    np.subtract(mixed, after, out=mix[:, :, 0])
+    values = _mixed(bank, index, mix, active, posture_layer)
     state = Playback(
-        state.unit, state.first, state.lap_frames, state.before_last, weight, state.timing, elapsed, lap, active
-    )
+        state.unit, state.first, state.lap_frames, state.before_last,
+        weight, state.timing, elapsed, lap, active, stretch, index,
+    )  # fmt: skip
     return values, state, jumped
 
 
-def _mixed(
-    bank: MotionBank,
-    index: NDArray[np.int32],
-    weight: Floats,
-    part: Floats,
-    rate: Floats,
-    active: Bools,
-    layers: list[int],
-) -> Layered:
-    """Rows at index and the next one, mixed by weight (n, L, 7) and by part of the way."""
-    n = len(index)
-    keep = [weight.shape[-1]] * len(layers)
-    if n >= PRUNE_FROM:
-        best = np.argsort(-weight, axis=-1)
-        index = np.take_along_axis(index, best, axis=-1)
-        weight, part = (np.take_along_axis(a, best, axis=-1) for a in (weight, part))
-        keep = np.maximum(np.count_nonzero(weight, axis=-1).max(axis=0), 1).tolist()
-    mix = np.empty((*weight.shape[:2], 2, 2, weight.shape[-1]), dtype=np.float32)
-    np.multiply(weight, part, out=mix[:, :, 0, 1])
-    np.subtract(weight, mix[:, :, 0, 1], out=mix[:, :, 0, 0])
-    np.multiply(weight, rate[:, :, None], out=mix[:, :, 1, 1])
-    np.negative(mix[:, :, 1, 1], out=mix[:, :, 1, 0])
+def speeds(bank: MotionBank, state: Playback, posture_layer: int) -> Layered:
+    """How fast what the running layers say changes, per second."""
+    mixed = state.weight.copy()
+    mixed[:, posture_layer] = _shares(mixed[:, posture_layer])
+    mix = np.empty((*mixed.shape[:2], 2, 7), dtype=np.float32)
+    after = np.multiply(mixed, state.stretch.rate[:, :, None], out=mix[:, :, 1])
+    np.negative(after, out=mix[:, :, 0])
+    return _mixed(bank, state.index, mix, state.active, posture_layer)
+
+
+def _mixed(bank: MotionBank, index: Ints, mix: Floats, active: Bools, posture_layer: int) -> Layered:
+    """Rows at index (n, L, 7) and the next ones, mixed (n, L, 2, 7)."""
+    n, layers = active.shape
     both = index[:, :, None] + _THIS_AND_NEXT
     values: Layered = []
-    for layer in layers:
+    for layer in (posture_layer, *(k for k in range(layers) if k != posture_layer)):
         who = None
         running = np.count_nonzero(active[:, layer])
         if running == 0:
             continue
-        frames, shares = both[:, layer, :, : keep[layer]], mix[:, layer, :, :, : keep[layer]]
+        frames, shares = both[:, layer], mix[:, layer]
         if running < n:
             who = np.flatnonzero(active[:, layer])
             frames, shares = frames.take(who, axis=0), shares.take(who, axis=0)
-        rows = bank.rows.take(frames.reshape(running, -1), axis=0)
-        values.append((layer, who, shares.reshape(running, 2, -1) @ rows))
+        frames, shares = frames.reshape(running, -1), shares.reshape(running, -1)
+        if n >= PRUNE_FROM:
+            frames, shares = _in_use(frames, shares)
+        shares = shares[:, None]
+        values.append((layer, who, _sums(bank.rows, frames, shares)))
     return values
+
+
+def _in_use(frames: Ints, shares: Floats) -> tuple[Ints, Floats]:
+    """Only as many columns of (m, 14) as the most of them who have shares use."""
+    used = shares != 0.0
+    most = int(np.count_nonzero(used, axis=1).max())
+    first = np.argsort(~used, axis=1, kind="stable")[:, :most]
+    return np.take_along_axis(frames, first, axis=1), np.take_along_axis(shares, first, axis=1)
+
+
+def _sums(rows: Floats, frames: Ints, shares: Floats) -> Floats:
+    """rows: (R, CHANNELS) at frames (m, k), added up by shares (m, 1, k)."""
+    if len(frames) <= PIECE:
+        return (shares @ rows.take(frames, axis=0))[:, 0]
+    total = np.empty((len(frames), 1, rows.shape[1]), dtype=np.float32)
+    for first in range(0, len(frames), PIECE):
+        some = slice(first, first + PIECE)
+        np.matmul(shares[some], rows.take(frames[some], axis=0), out=total[some])
+    return total[:, 0]

@@ -110,8 +110,8 @@ def _stand(performer: Performer, planner: Planner, n: int) -> tuple[PerformerSta
         said[:, 2] = float(tick % 80 in range(40, 60))
         plan, decisions = planner.advance(plan, PlannerSignal(felt, said, tick * _TICK_S), _TICK_S)
         state, pose = performer.advance(state, decisions, signal, _TICK_S)
-        age = state.blend.age_s[0]
-        changing = (age > 0.1) & (age < state.blend.source.ends_s[0, 0])
+        left = state.blend.left[0, 0]
+        changing = (left > 0.0) & (left < 0.8)
         if state.playback.active[0, performer.layers.index("gesture")] and changing.any():
             break
     # Most ticks start nothing: the decision stands.
@@ -121,7 +121,7 @@ def _stand(performer: Performer, planner: Planner, n: int) -> tuple[PerformerSta
 
 def _same_work(performer: Performer, rig: Rig, state: PerformerState, gate: Floats, signal: PerformSignal) -> object:
     values, _, _ = advance_playback(performer.bank, state.playback, signal.emotion, 0, _TICK_S)
-    mixed, _ = compose(values, gate)
+    mixed = compose(values, gate)
     rotation = bl.normalize(mixed[:, ch.ROTATION].reshape(len(mixed), ch.JOINTS, 4))
     pose = Pose(rotation, mixed[:, ch.ROOT], state.gaze.eye, state.gaze.eye, state.gaze.eye)
     return rig.advance(rig.start(len(mixed)), pose, _TICK_S)

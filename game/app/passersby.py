@@ -111,9 +111,10 @@ class Passersby:
         """Move by other units from now on, from the poses of this moment; the same units change nothing."""
         if planner is self._planner:
             return
+        before = self._performer
         self._move_by(planner, performer)
         self._plan = planner.start(self._count, self._seed ^ 0x0C40)
-        self._state = self._performer.adopt(self._state)
+        self._state = self._performer.adopt(self._state, before)
         self._words = np.zeros((self._count, len(planner.library.gestures)))
 
     def tick(self, world: World) -> None:

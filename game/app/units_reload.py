@@ -54,12 +54,12 @@ def load_body(units: Path, known: Known | None = None) -> tuple[Planner, Perform
 def take_up_units(session: Session, planner: Planner, performer: Performer) -> None:
     """Every stall's shopkeeper moves by these units from now on, from the pose of this moment; the talk goes on."""
     world = session.world
-    state, moving = planner.start(1, world.seed), world.body.performer
+    state, moving, before = planner.start(1, world.seed), world.body.performer, session.assets.performer
     body = replace(
         world.body,
         planner=state,
         decisions=state.decisions,
-        performer=None if moving is None else performer.adopt(moving),
+        performer=None if moving is None or before is None else performer.adopt(moving, before),
         signal=None,
     )
     # What the present line calls up is counted in the old units' order.
