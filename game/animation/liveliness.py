@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import channels as ch
+from game.animation.arithmetic import Curve, Number, arithmetic, columns, numbers
 from game.core.humanoid import REFERENCE
 from game.core.springs import half_life_to_damping
 from game.embos.draws import character_keys, uniform
@@ -79,27 +80,17 @@ class LifeConfig:
 
     @cached_property
     def rates(self) -> Floats:
-        """(7, 8) how fast Life.timers run in each emotion; breath and sway that are added, and the tempo."""
-        still = np.ones(7)
-        per_second = (self.sway_pace, self.breath_per_min / 60.0, -still, -still, still)
-        amounts = (self.breath_depth * self.breath_share, self.sway * self.sway_share, self.tempo)
-        return np.stack([*per_second, *amounts], axis=1)
+        """(7, 6) pace of the sway, breaths per second, pace of the other timers, how much of breath and of sway is
+        added, and the tempo."""
+        breath, sway = self.breath_depth * self.breath_share, self.sway * self.sway_share
+        return np.stack([self.sway_pace, self.breath_per_min / 60.0, np.ones(7), breath, sway, self.tempo], axis=1)
 
     @cached_property
-    def eye_scale(self) -> Floats:
-        """(2,) look per radian."""
-        return np.array([1.0 / self.eye_yaw_rad, 1.0 / self.eye_pitch_rad])
-
-    @cached_property
-    def head_shares(self) -> Floats:
-        """(3,) how much of the target's yaw and pitch the head takes, and of its yaw the torso."""
-        return np.array([self.head_share, -self.head_share, self.torso_share])
-
-    @cached_property
-    def head_stiffness(self) -> Floats:
-        """(3,) per second: half the damping of critical springs with the half-lives (game.core.springs)."""
-        half_lives = np.array([self.head_half_life_s, self.head_half_life_s, self.torso_half_life_s])
-        return np.asarray(half_life_to_damping(half_lives) / 2.0)
+    def stiffness(self) -> tuple[float, float]:
+        """Per second, of head and torso: half the damping of critical springs with the half-lives
+        (game.core.springs)."""
+        head, torso = (half_life_to_damping(h) / 2.0 for h in (self.head_half_life_s, self.torso_half_life_s))
+        return float(head), float(torso)
 
 
 _SWAYS = ("right", "forward", "twist", "side", "yaw", "roll")
@@ -145,49 +136,68 @@ def _effect_table() -> Floats:
 
 
 _EFFECT = _effect_table()
-_SWAY_RATE = 2.0 * np.pi * _SWAY_HZ
+_SWAY_RATE = tuple((2.0 * np.pi * _SWAY_HZ).tolist())
 # In for 42 % of the cycle, out a little slower, then a pause: as the takes breathe.
 _BREATH_AT = np.linspace(0.0, 1.0, 65)
-_BREATH = np.where(
-    _BREATH_AT < 0.42,
-    0.5 - 0.5 * np.cos(np.pi * _BREATH_AT / 0.42),
-    0.5 + 0.5 * np.cos(np.pi * np.minimum((_BREATH_AT - 0.42) / 0.464, 1.0)),
+_BREATH = Curve(
+    _BREATH_AT,
+    np.where(
+        _BREATH_AT < 0.42,
+        0.5 - 0.5 * np.cos(np.pi * _BREATH_AT / 0.42),
+        0.5 + 0.5 * np.cos(np.pi * np.minimum((_BREATH_AT - 0.42) / 0.464, 1.0)),
+    ),
 )
-_BLINK_AT = np.array([0.0, 0.3, 0.45, 1.0])
-_BLINK_SHUT = np.array([0.0, 1.0, 1.0, 0.0])
-_HEAD_CUES = np.array([0, 1, 0])
-_CLOCK, _BREATHS, _DART_LEFT, _BLINK_LEFT, _BLINK_AGE = range(5)
+_BLINK = Curve(np.array([0.0, 0.3, 0.45, 1.0]), np.array([0.0, 1.0, 1.0, 0.0]))
 _NOD_WAVE = 2 * _SWAYS.index("yaw") + 1
 _SHIFT = 0.55
 """A jump of the eyes beyond this brings a blink with it."""
-for _table in (_EFFECT, _SWAY_HZ, _SWAY_RATE, _BREATH_AT, _BREATH, _BLINK_AT, _BLINK_SHUT, _HEAD_CUES):
+for _table in (_EFFECT, _SWAY_HZ, _BREATH_AT):
     _table.setflags(write=False)
+
+# Columns of Life.now.
+_CLOCK, _BREATHS, _DART_LEFT, _BLINK_LEFT, _BLINK_AGE, _DART = range(6)
+_HEAD, _MOOD, _LUNGS, _LIDS = 7, 13, 15, 16
 
 
 @dataclass(frozen=True, eq=False)
 class Life:
     """n characters. key: seeds of their draws; counts: (n, 2) darts and blinks drawn. phase: (n, 12) of the sways.
-    timers: (n, 5) sway time, breaths, seconds to the next dart and blink, since the last blink. dart: (n, 2) of the
-    eyes. head: (n, 2, 3) yaw and pitch added to the head, yaw added to the torso, radians, and their speeds. mood:
-    (n, 2) attention (1 looks at the target, 0 where the unit's own gaze leads) and voice, both smoothed."""
+    now: (n, 17) sway time, breaths, seconds to the next dart and blink, since the last blink; dart of the eyes (2); yaw
+    and pitch added to the head, yaw added to the torso, radians, and their speeds; attention (1 looks at the target, 0
+    where the unit's own gaze leads) and voice, both smoothed; lungs and lids as in Pose."""
 
     key: NDArray[np.uint64]
     counts: NDArray[np.int64]
     phase: Floats
-    timers: Floats
-    dart: Floats
-    head: Floats
-    mood: Floats
+    now: Floats
+
+    @property
+    def head(self) -> Floats:
+        """(n, 2, 3) yaw and pitch added to the head, yaw added to the torso, radians, and their speeds."""
+        return self.now[:, _HEAD:_MOOD].reshape(-1, 2, 3)
+
+    @property
+    def lungs(self) -> Floats:
+        """(n,) as Pose.breath."""
+        return self.now[:, _LUNGS]
+
+    @property
+    def lids(self) -> Floats:
+        """(n,) as Pose.blink."""
+        return self.now[:, _LIDS]
 
 
 @dataclass(frozen=True, eq=False)
 class Gaze:
-    """eye: (n, 2) in [-1, 1]; aim: (n, 2) yaw and pitch of the target in model space, radians; leap: (n,) True where
-    the eyes have just been sent far."""
+    """now: (n, 5) the eyes in [-1, 1] (2), yaw and pitch of the target in model space, radians, and 1 where the eyes
+    have just been sent far."""
 
-    eye: Floats
-    aim: Floats
-    leap: NDArray[np.bool_]
+    now: Floats
+
+    @property
+    def eye(self) -> Floats:
+        """(n, 2) as Pose.gaze."""
+        return self.now[:, :2]
 
 
 def start_life(n: int, seed: int, first: int = 0) -> Life:
@@ -195,104 +205,124 @@ def start_life(n: int, seed: int, first: int = 0) -> Life:
     key = character_keys(seed ^ 0x11FE, first, n)
     zero = np.zeros(n, dtype=np.int64)
     draw = np.concatenate([uniform(key, zero + stream, zero, 8) for stream in (2, 3)], axis=1)
-    timers = np.zeros((n, 5))
-    timers[:, _BREATHS], timers[:, _DART_LEFT] = draw[:, -1], draw[:, -2]
-    timers[:, _BLINK_LEFT], timers[:, _BLINK_AGE] = 0.5 + 4.0 * draw[:, -3], 10.0
-    return Life(
-        key=key,
-        counts=np.zeros((n, 2), dtype=np.int64),
-        phase=2.0 * np.pi * draw[:, : len(_SWAY_HZ)],
-        timers=timers,
-        dart=np.zeros((n, 2)),
-        head=np.zeros((n, 2, 3)),
-        mood=np.tile([1.0, 0.0], (n, 1)),
-    )
+    now = np.zeros((n, 17))
+    now[:, _BREATHS], now[:, _DART_LEFT] = draw[:, -1], draw[:, -2]
+    now[:, _BLINK_LEFT], now[:, _BLINK_AGE] = 0.5 + 4.0 * draw[:, -3], 10.0
+    now[:, _MOOD] = 1.0
+    return Life(key, np.zeros((n, 2), dtype=np.int64), 2.0 * np.pi * draw[:, : len(_SWAY_HZ)], now)
 
 
 def start_gaze(n: int) -> Gaze:
     """Straight ahead."""
-    return Gaze(np.zeros((n, 2)), np.zeros((n, 2)), np.zeros(n, dtype=bool))
+    return Gaze(np.zeros((n, 5)))
 
 
 def advance_life(
-    config: LifeConfig, state: Life, gaze: Gaze, shares: Floats, mood: Floats, dt_s: float
-) -> tuple[Life, Floats, Floats, Floats]:
-    """shares: (n, 7) emotion, summing to 1; mood: (n, 2) whether the target is looked at and whether one speaks, 0..1.
+    config: LifeConfig, state: Life, gaze: Gaze, shares: Floats, attention: Floats, speaking: Floats, dt_s: float
+) -> tuple[Life, Floats]:
+    """shares: (n, 7) emotion, summing to 1; attention, speaking: (n,) whether the target is looked at and whether one
+    speaks, 0..1.
 
-    -> state; (n, CHANNELS) what is added to the row; lungs (n,) 0..1; blink (n,) 0..1.
+    -> state; (n, CHANNELS) what is added to the row.
     """
-    rates = shares @ config.rates
-    timers = state.timers + rates[:, :5] * dt_s
-    dart, counts = state.dart, state.counts
-    if np.count_nonzero(gaze.leap):
-        timers[:, _BLINK_LEFT] = np.where(gaze.leap, np.minimum(timers[:, _BLINK_LEFT], 0.0), timers[:, _BLINK_LEFT])
-    if np.minimum.reduce(timers[:, _DART_LEFT : _BLINK_LEFT + 1], axis=None) <= 0.0:
-        dart, counts = _draw(config, state, shares, timers)
-    depth, sway, tempo = rates[:, 5], rates[:, 6:7], rates[:, 7:]
-    mood = state.mood + (mood - state.mood) * (1.0 - 2.0 ** (-dt_s / config.mood_half_life_s))
-    wanted = gaze.aim.take(_HEAD_CUES, axis=1) * (config.head_shares * mood[:, :1])
-    # A critically damped spring, exact in dt (game.core.springs), at the emotion's tempo.
-    stiffness = config.head_stiffness / tempo
-    speed = state.head[:, 1]
-    away = state.head[:, 0] - wanted
+    n, counts = len(shares), state.counts
+    do = arithmetic(n)
+    pace, breath_hz, one, depth, sway, tempo = numbers(shares @ config.rates)
+    _, _, aim_yaw, aim_pitch, leap = numbers(gaze.now)
+    looks, voice_now = numbers(np.array([attention, speaking]).T)
+    clock, breaths, dart_left, blink_left, blink_age, *more = numbers(state.now)
+    right, up, yaw, pitch, torso, yaw_speed, pitch_speed, torso_speed, mood, voice, _, _ = more
+    clock, breaths = clock + pace * dt_s, breaths + breath_hz * dt_s
+    passed = one * dt_s
+    dart_left, blink_left, blink_age = dart_left - passed, blink_left - passed, blink_age + passed
+    if do.any(leap):
+        blink_left = do.where(leap, do.least(blink_left, 0.0), blink_left)
+    if do.any(do.least(dart_left, blink_left) <= 0.0):
+        drawn = columns([dart_left, blink_left, blink_age, right, up], n)
+        counts = _draw(config, state, shares, drawn)
+        dart_left, blink_left, blink_age, right, up = numbers(drawn)
+    gain = 1.0 - 2.0 ** (-dt_s / config.mood_half_life_s)
+    mood, voice = mood + (looks - mood) * gain, voice + (voice_now - voice) * gain
+    # At the emotion's tempo.
+    head_stiffness, torso_stiffness = (s / tempo for s in config.stiffness)
+    head_decay, torso_decay = do.exp(head_stiffness * -dt_s), do.exp(torso_stiffness * -dt_s)
+    share, twist = config.head_share * mood, config.torso_share * mood
+    yaw, yaw_speed = _spring(yaw, yaw_speed, aim_yaw * share, head_stiffness, head_decay, dt_s)
+    pitch, pitch_speed = _spring(pitch, pitch_speed, aim_pitch * -share, head_stiffness, head_decay, dt_s)
+    torso, torso_speed = _spring(torso, torso_speed, aim_yaw * twist, torso_stiffness, torso_decay, dt_s)
+    sin = do.sin
+    waves = [sin(clock * rate + phase) for rate, phase in zip(_SWAY_RATE, numbers(state.phase), strict=True)]
+    lungs = do.curve(_BREATH, breaths % 1.0)
+    lids = do.curve(_BLINK, blink_age / config.blink_s)
+    nod = voice * waves[_NOD_WAVE] * config.nod_rad
+    cues = [lungs * depth, *(wave * sway for wave in waves), yaw, pitch, torso, nod]
+    now = [
+        clock, breaths, dart_left, blink_left, blink_age, right, up,
+        yaw, pitch, torso, yaw_speed, pitch_speed, torso_speed, mood, voice, lungs, lids,
+    ]  # fmt: skip
+    return Life(state.key, counts, state.phase, columns(now, n)), columns(cues, n, np.float32) @ _EFFECT
+
+
+def _spring(
+    value: Number, speed: Number, goal: Number, stiffness: Number, decay: Number, dt_s: float
+) -> tuple[Number, Number]:
+    """A critically damped spring, exact in dt (game.core.springs)."""
+    away = value - goal
     push = (speed + away * stiffness) * dt_s
-    decay = np.exp(stiffness * -dt_s)
-    head = np.empty_like(state.head)
-    np.add(wanted, decay * (away + push), out=head[:, 0])
-    np.multiply(decay, speed - push * stiffness, out=head[:, 1])
-    waves = np.sin(timers[:, :1] * _SWAY_RATE + state.phase)
-    lungs = np.interp(timers[:, _BREATHS] % 1.0, _BREATH_AT, _BREATH)
-    cues = np.empty((len(timers), len(_CUES)), dtype=np.float32)
-    cues[:, 0] = lungs * depth
-    cues[:, 1:13] = waves * sway
-    cues[:, 13:16] = head[:, 0]
-    cues[:, 16] = mood[:, 1] * waves[:, _NOD_WAVE] * config.nod_rad
-    blink = np.interp(timers[:, _BLINK_AGE] / config.blink_s, _BLINK_AT, _BLINK_SHUT)
-    return Life(state.key, counts, state.phase, timers, dart, head, mood), cues @ _EFFECT, lungs, blink
+    return goal + decay * (away + push), decay * (speed - push * stiffness)
 
 
 def look(
     config: LifeConfig, life: Life, gaze: Gaze, target: Floats, head: Floats, chest: Floats, eyes: Floats, dt_s: float
 ) -> Gaze:
-    """Eyes to the target (n, 3) as far as they go. head, chest: (n, 4, 4) matrices; eyes: (4,) in the head's frame,
-    homogeneous."""
-    way = np.empty((len(target), 2, 3))
-    np.subtract(target, (head @ eyes)[:, :3], out=way[:, 0])
-    np.matmul(way[:, :1], head[:, :3, :3], out=way[:, 1:])
-    right, ahead = way[..., 0], way[..., 2]
-    angle = np.empty((len(target), 2, 2))
-    np.arctan2(right, ahead, out=angle[..., 0])
-    np.arctan2(way[..., 1], np.hypot(right, ahead), out=angle[..., 1])
-    attention = life.mood[:, :1]
-    wanted = angle[:, 1] * (config.eye_scale * attention)
-    wanted += life.dart
-    if np.minimum.reduce(attention, axis=None) < 0.999:
+    """Eyes to the target (n, 3) as far as they go. head, chest: (n, 4, 4) matrices; eyes: (3,) in the head's frame."""
+    n = len(target)
+    do = arithmetic(n)
+    xx, yx, zx, tx, xy, yy, zy, ty, xz, yz, zz, tz, *_ = numbers(head.reshape(n, 16))
+    x, y, z = numbers(target)
+    ex, ey, ez = eyes.tolist()
+    x, y, z = (
+        x - (xx * ex + yx * ey + zx * ez + tx),
+        y - (xy * ex + yy * ey + zy * ez + ty),
+        z - (xz * ex + yz * ey + zz * ez + tz),
+    )
+    aim_yaw, aim_pitch = do.arctan2(x, z), do.arctan2(y, do.hypot(x, z))
+    right, up, ahead = x * xx + y * xy + z * xz, x * yx + y * yy + z * yz, x * zx + y * zy + z * zz
+    *_, dart_right, dart_up, _, _, _, _, _, _, attention, _, _, _ = numbers(life.now)
+    eye_right, eye_up, _, _, _ = numbers(gaze.now)
+    want_right = do.arctan2(right, ahead) * (attention / config.eye_yaw_rad) + dart_right
+    want_up = do.arctan2(up, do.hypot(right, ahead)) * (attention / config.eye_pitch_rad) + dart_up
+    if do.any(attention < 0.999):
         # Where a unit's own gaze leads, the eyes go a little further the way the head has turned.
-        lead = (chest[:, :3, :3].swapaxes(-1, -2) @ head[:, :3, 2, None])[..., 0]
-        wanted[:, 0] += (1.0 - attention[:, 0]) * np.arctan2(lead[:, 0], lead[:, 2]) * (0.5 * config.eye_scale[0])
-    step = np.minimum(np.maximum(wanted, -1.0), 1.0) - gaze.eye
-    eye = gaze.eye + step * (1.0 - 2.0 ** (-dt_s / config.eye_half_life_s))
-    return Gaze(eye, angle[:, 0], np.maximum.reduce(np.abs(step), axis=1) > _SHIFT)
+        cx, _, cz, _, dx, _, dz, _, gx, _, gz, *_ = numbers(chest.reshape(n, 16))
+        lead = do.arctan2(cx * zx + dx * zy + gx * zz, cz * zx + dz * zy + gz * zz)
+        want_right = want_right + (1.0 - attention) * lead * (0.5 / config.eye_yaw_rad)
+    right = do.least(do.most(want_right, -1.0), 1.0) - eye_right
+    up = do.least(do.most(want_up, -1.0), 1.0) - eye_up
+    gain = 1.0 - 2.0 ** (-dt_s / config.eye_half_life_s)
+    leap = do.most(abs(right), abs(up)) > _SHIFT
+    return Gaze(columns([eye_right + right * gain, eye_up + up * gain, aim_yaw, aim_pitch, leap], n))
 
 
-def _draw(config: LifeConfig, state: Life, shares: Floats, timers: Floats) -> tuple[Floats, NDArray[np.int64]]:
-    """New eye darts and blinks for those whose time has come; sets their timers, returns darts and counts."""
-    dart, counts = state.dart.copy(), state.counts.copy()
-    due = np.flatnonzero(timers[:, _DART_LEFT] <= 0.0)
+def _draw(config: LifeConfig, state: Life, shares: Floats, drawn: Floats) -> NDArray[np.int64]:
+    """New eye darts and blinks for those whose time has come. drawn: (n, 5) seconds to the next dart and blink, since
+    the last blink, and the dart, written anew. -> counts."""
+    counts = state.counts.copy()
+    due = np.flatnonzero(drawn[:, 0] <= 0.0)
     if due.size:
         draws = uniform(state.key[due], np.zeros(due.size, dtype=np.intp), counts[due, 0], 4).T
         # Every third dart returns to the target itself, so the gaze does not wander off.
         size = np.where(draws[3] < 0.33, 0.0, 2.0 * (shares[due] @ config.dart_size))
-        dart[due, 0] = (draws[0] - 0.5) * 2.0 * size
-        dart[due, 1] = (draws[1] - 0.5) * size
-        timers[due, _DART_LEFT] = (0.35 + 1.3 * draws[2]) / (shares[due] @ config.darts_per_s)
+        drawn[due, 3] = (draws[0] - 0.5) * 2.0 * size
+        drawn[due, 4] = (draws[1] - 0.5) * size
+        drawn[due, 0] = (0.35 + 1.3 * draws[2]) / (shares[due] @ config.darts_per_s)
         counts[due, 0] += 1
-    due = np.flatnonzero(timers[:, _BLINK_LEFT] <= 0.0)
+    due = np.flatnonzero(drawn[:, 1] <= 0.0)
     if due.size:
         first, second = uniform(state.key[due], np.ones(due.size, dtype=np.intp), counts[due, 1], 2).T
         wait = (0.3 + 1.4 * first) * 60.0 / (shares[due] @ config.blinks_per_min)
         # One blink in eight comes double.
-        timers[due, _BLINK_LEFT] = np.where(second < 0.125, 0.3, wait)
-        timers[due, _BLINK_AGE] = 0.0
+        drawn[due, 1] = np.where(second < 0.125, 0.3, wait)
+        drawn[due, 2] = 0.0
         counts[due, 1] += 1
-    return dart, counts
+    return counts

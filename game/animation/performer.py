@@ -35,7 +35,7 @@ MODES: tuple[Mode, ...] = ("full", "gestures", "body", "face")
 body does (the face is another stage's); ``face``: the body stands still at neutral."""
 
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
-_EYES = np.append(HEAD_CENTRE_OFFSET, 1.0).astype(np.float32)
+_EYES = np.array(HEAD_CENTRE_OFFSET, dtype=np.float32)
 _LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array([True, True, False, False]))
 _BONES = contacts.slot("hips") + figure.BONES
 _HEAD, _CHEST = contacts.slot("head"), contacts.slot("chest")
@@ -126,7 +126,11 @@ class Performer:
         """One tick of dt_s seconds (0 draws the present moment again)."""
         emotion = _shares(signal)
         play, blend = self._layers(state, decisions, signal, emotion, dt_s)
-        life, row, lungs, blink = self._enliven(state, play, blend, signal, emotion, dt_s)
+        attention = blend.source.attention
+        life, row = liveliness.advance_life(
+            self.life, state.life, state.gaze, emotion, attention, signal.speaking, dt_s
+        )
+        row += blend.row
         n = len(row)
         turns = bl.normalize(row[:, ch.TURNS].reshape(n, -1, 4))
         matrices = contacts.body_matrices(turns, row[:, ch.PLACES])
@@ -139,7 +143,7 @@ class Performer:
         place_limbs(_LIMBS, rotation, matrices.take(_BONES, axis=1), goal)
         head, chest = matrices[:, _HEAD], matrices[:, _CHEST]
         gaze = liveliness.look(self.life, life, state.gaze, signal.gaze_target, head, chest, _EYES, dt_s)
-        pose = Pose(rotation, row[:, ch.ROOT], gaze.eye, blink, lungs)
+        pose = Pose(rotation, row[:, ch.ROOT], gaze.eye, life.lids, life.lungs)
         return PerformerState(play, blend, life, gaze, matrices, push), pose
 
     def _layers(
@@ -179,23 +183,6 @@ class Performer:
     def _neutral_weights(self, layer: int) -> Floats:
         unit = self.bank.rest[layer]
         return np.asarray(self.library.mix_weights(_NEUTRAL, unit)) if layer == self._posture else np.zeros(7)
-
-    def _enliven(
-        self,
-        state: PerformerState,
-        play: playback.Playback,
-        blend: blending.Blend,
-        signal: PerformSignal,
-        emotion: Floats,
-        dt_s: float,
-    ) -> tuple[liveliness.Life, Floats, Floats, Floats]:
-        """Breath, sway and the head's share of the gaze added to the row."""
-        mood = np.empty((len(blend.row), 2))
-        mood[:, 0] = blend.source.attention
-        mood[:, 1] = signal.speaking
-        life, added, lungs, blink = liveliness.advance_life(self.life, state.life, state.gaze, emotion, mood, dt_s)
-        added += blend.row
-        return life, added, lungs, blink
 
 
 def _shares(signal: PerformSignal) -> Floats:

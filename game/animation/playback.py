@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from game.animation import pace
 from game.animation.motion_bank import FPS, MotionBank
+from game.animation.pace import Stretch, next_stretch
 
-__all__ = ["Layered", "Playback", "Stretch", "advance_playback", "begin", "of_some", "speeds", "start"]
+__all__ = ["Layered", "Playback", "advance_playback", "begin", "of_some", "speeds", "start"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]
@@ -31,8 +33,6 @@ PRUNE_FROM = 8
 """From this many characters on it pays to gather only the variants in use."""
 PIECE = 32
 """Characters whose rows are gathered at a time: what is mixed next is still in the cache."""
-EARLY_S = 1e-4
-"""A stretch of even pace is left this long before its end, so that rounding never makes it last too long."""
 
 _THIS_AND_NEXT = np.array([[0], [1]])
 _SUM = np.ones((7, 7), dtype=np.float32)
@@ -45,45 +45,15 @@ Layered = list[tuple[int, Ints | None, Floats]]
 first."""
 
 
-# Rows of Playback.timing.
-(
-    _BEFORE_S,
-    _LEAD_RATE,
-    _AFTER_RATE,
-    _HOLD_FIRST,
-    _HOLD_LENGTH,
-    _HELD,
-    _LOOP_FIRST,
-    _LOOP_FRAMES,
-    _LOOP_TIMES,
-    _LAST,
-) = range(10)
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """Where n characters' units stand while they go on at an even pace: frame = elapsed_s·rate + base.
-
-    rate: (n, L) frames per second; base: (n, L); wrapped: (n, L, 7) frames of the loops that are over; until_s: (n, L)
-    the pace, a loop or the unit ends then (−∞: not known yet).
-    """
-
-    rate: Floats
-    base: Floats
-    wrapped: Floats
-    until_s: Floats
-
-
 @dataclass(frozen=True, eq=False)
 class Playback:
     """n characters, L layers.
 
     unit: (n, L). first: (n, L, 7) rows of the chosen variants. lap_frames: (n, L, 7) frames a posture's loops take, ∞
     for what is played once; before_last: (n, L, 7) the last frame but one. weight: (n, L, 7) the posture's of eq. 5,
-    which drift; the others' as they are mixed. timing: (10, n, L) second of the stroke, frames per second before and
-    after it, first frame, length and added frames of a stretched middle, first frame, frames and times of a repeated
-    one, last frame. elapsed_s: (n, L) since the unit started (a posture: position in its loops). lap: (n, L) repeats
-    already made. active: (n, L) False once a unit has played to its end. index: (n, L, 7) rows last shown.
+    which drift; the others' as they are mixed. timing: (10, n, L) of game.animation.pace. elapsed_s: (n, L) since the
+    unit started (a posture: position in its loops). lap: (n, L) repeats already made. active: (n, L) False once a unit
+    has played to its end. index: (n, L, 7) rows last shown.
     """
 
     unit: Ints
@@ -101,7 +71,7 @@ class Playback:
     @property
     def to_stroke_s(self) -> Floats:
         """(n, L) seconds until the stroke, negative after it."""
-        return np.asarray(self.timing[_BEFORE_S] - self.elapsed_s)
+        return np.asarray(self.timing[pace.BEFORE_S] - self.elapsed_s)
 
     def of(self, who: Ints) -> Playback:
         """Some of the characters."""
@@ -140,12 +110,7 @@ def start(n: int, layers: int) -> Playback:
         elapsed_s=np.zeros(shape, dtype=np.float32),
         lap=np.zeros(shape, dtype=np.float32),
         active=np.zeros(shape, dtype=bool),
-        stretch=Stretch(
-            rate=np.zeros(shape, dtype=np.float32),
-            base=np.zeros(shape, dtype=np.float32),
-            wrapped=np.zeros((*shape, 7), dtype=np.float32),
-            until_s=np.full(shape, -np.inf, dtype=np.float32),
-        ),
+        stretch=pace.unknown(shape),
         index=np.zeros((*shape, 7), dtype=np.intp),
     )
 
@@ -185,15 +150,15 @@ def begin(
     loops = who[1] == posture_layer
     timing = np.empty((10, len(u)), dtype=np.float32)
     # A posture never comes to its stroke or its end.
-    timing[_BEFORE_S], timing[_LAST] = np.where(loops, np.inf, before), np.where(loops, np.inf, last)
-    timing[_LEAD_RATE], timing[_AFTER_RATE] = np.where(loops, FPS, stroke / np.maximum(before, 1e-6)), rate
-    timing[_HOLD_FIRST], timing[_HOLD_LENGTH] = stroke + HOLD_START * (last - stroke), room + held
-    timing[_HELD], timing[_LOOP_FIRST], timing[_LOOP_FRAMES] = (
+    timing[pace.BEFORE_S], timing[pace.LAST] = np.where(loops, np.inf, before), np.where(loops, np.inf, last)
+    timing[pace.LEAD_RATE], timing[pace.AFTER_RATE] = np.where(loops, FPS, stroke / np.maximum(before, 1e-6)), rate
+    timing[pace.HOLD_FIRST], timing[pace.HOLD_LENGTH] = stroke + HOLD_START * (last - stroke), room + held
+    timing[pace.HELD], timing[pace.LOOP_FIRST], timing[pace.LOOP_FRAMES] = (
         np.where(loops, 0.0, held),
         bank.loop_first[u],
         loop_frames,
     )
-    timing[_LOOP_TIMES] = np.where(loop_frames > 0, np.round(extra / np.maximum(loop_frames, 1.0)), 0.0)
+    timing[pace.LOOP_TIMES] = np.where(loop_frames > 0, np.round(extra / np.maximum(loop_frames, 1.0)), 0.0)
     # Postures come in anywhere in their loop, so that the same one does not look the same twice.
     phase = np.where(loops, np.modf(pick[who] * 7.31)[0] * (w * length).sum(-1) / FPS, 0.0)
 
@@ -255,38 +220,6 @@ def _step(dt_s: float) -> tuple[Floats, Floats]:
     return made[0, ...], made[1, ...]
 
 
-def _played(state: Playback, elapsed_s: Floats) -> tuple[Floats, Floats, Floats, Bools]:
-    """Frame (n, L) a unit has come to, frames per second there, the repeats made so far, and whether it is held."""
-    before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times, _ = state.timing
-    past = elapsed_s - before
-    at = np.minimum(elapsed_s, before) * lead
-    at += np.maximum(past, 0.0) * after
-    rate = np.where(past < 0.0, lead, after)
-    lap = state.lap
-    if np.count_nonzero(times):
-        lap = np.clip(np.floor((at - loop_first) / np.maximum(loop_frames, 1.0)), 0.0, times)
-        at -= lap * loop_frames
-    within = held > 0.0
-    if np.count_nonzero(within):
-        length = np.maximum(hold_length, 1e-6)
-        share = (at - hold_first) / length
-        within &= (share > 0.0) & (share < 1.0)
-        u = (2.0 * np.pi) * np.minimum(np.maximum(share, 0.0), 1.0)
-        at -= held * (u - np.sin(u)) * (0.5 / np.pi)
-        rate = rate * (1.0 - held / length * (1.0 - np.cos(u)))
-    return at, rate, lap, within
-
-
-def _until(state: Playback, elapsed_s: Floats, at: Floats, rate: Floats, lap: Floats, wrapped: Floats) -> Floats:
-    """(n, L) when the even pace of units that are not held ends."""
-    before, _, _, hold_first, _, held, loop_first, loop_frames, times, last = state.timing
-    ahead = np.where((held > 0.0) & (at < hold_first), hold_first, last)
-    ahead = np.where(lap < times, np.minimum(ahead, loop_first + loop_frames), ahead)
-    ahead = np.minimum(ahead, (wrapped + state.lap_frames).min(axis=-1))
-    until = elapsed_s + (ahead - at) / np.maximum(rate, 1e-6)
-    return np.asarray(np.where(elapsed_s < before, np.minimum(until, before), until)) - np.float32(EARLY_S)
-
-
 def advance_playback(
     bank: MotionBank, state: Playback, emotion: Floats, posture_layer: int, dt_s: float
 ) -> tuple[Layered, Playback, Bools | None]:
@@ -298,24 +231,15 @@ def advance_playback(
     step, gain = _step(dt_s)
     elapsed, stretch = state.elapsed_s + step, state.stretch
     active, lap, jumped = state.active, state.lap, None
-    if np.count_nonzero(elapsed >= stretch.until_s):
-        at, rate, lap, held = _played(state, elapsed)
-        last = state.timing[_LAST]
-        ended = active & (at >= last)
+    due = elapsed >= stretch.until_s
+    if np.count_nonzero(due):
+        stretch, lap, ended = next_stretch(stretch, due & active, state.timing, state.lap_frames, elapsed, lap)
+        jumped = ended | (lap != state.lap)
         if np.count_nonzero(ended):
-            active, jumped = active & ~ended, ended
-        if lap is not state.lap:
-            jumped = ended | (lap != state.lap)
-        at = np.minimum(at, last)
-        frame = np.fmod(at[:, :, None], state.lap_frames)
-        wrapped = at[:, :, None] - frame
-        until = np.where(held, -np.inf, _until(state, elapsed, at, rate, lap, wrapped))
-        until = np.where(active, until, np.inf).astype(np.float32)
-        stretch = Stretch(rate, at - elapsed * rate, wrapped, until)
-    else:
-        at = elapsed * stretch.rate
-        at += stretch.base
-        frame = at[:, :, None] - stretch.wrapped
+            active = active & ~ended
+    at = elapsed * stretch.rate
+    at += stretch.base
+    frame = at[:, :, None] - stretch.wrapped
     weight, mixed = state.weight.copy(), state.weight.copy()
     drifted = _drifted(bank, weight[:, posture_layer], state.unit[:, posture_layer], emotion, gain)
     weight[:, posture_layer] = drifted
