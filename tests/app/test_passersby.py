@@ -100,7 +100,8 @@ def test_a_loud_reaction_turns_the_heads_of_those_near(assets, cast) -> None:
     turned = [float(np.abs(m - n).max()) for m, n in zip(a.matrices, b.matrices, strict=True)]
     near = np.abs(a.place[:, 0]) < 3.0
     assert max(np.array(turned)[near]) > 0.1
-    assert max(np.array(turned)[np.abs(a.place[:, 0]) > 4.5], default=0.0) < 1e-6
+    # A hundredth of a millimetre: in other company the same sums round in other ways.
+    assert max(np.array(turned)[np.abs(a.place[:, 0]) > 4.5], default=0.0) < 1e-5
 
 
 def test_passers_by_wear_different_colours(cast) -> None:
