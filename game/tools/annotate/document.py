@@ -11,10 +11,13 @@ from game.core.errors import BadInput, Where
 from game.embos.findings import Findings
 from game.embos.units import LAYERS
 
-__all__ = ["MOMENT_S", "TRACKS", "Document", "Mark", "Word", "check_overlaps", "on_grid"]
+__all__ = ["LONGEST_S", "MOMENT_S", "TRACKS", "Document", "Mark", "Word", "check_overlaps", "on_grid"]
 
 MOMENT_S = 0.001
 """Times are kept in whole milliseconds: ELAN's unit, and what the files hold."""
+
+LONGEST_S = 1_000_000.0
+"""No take lasts longer: eleven days."""
 
 TRACKS = LAYERS
 """The layers of EMBOS, each a track of the timeline."""

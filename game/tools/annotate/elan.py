@@ -203,7 +203,7 @@ def _times(root: ElementTree.Element, path: Path) -> dict[str, float]:
         if value is None:
             continue  # ELAN leaves slots between two known ones open
         pointer = f"/TIME_ORDER/{slot.get('TIME_SLOT_ID', '?')}"
-        if not value.isdigit() or len(value) > 12:
+        if not (value.isascii() and value.isdigit()) or len(value) > 12:
             raise BadInput("time", where=Where(path, pointer=pointer), expected="whole milliseconds", seen=value)
         times[slot.get("TIME_SLOT_ID", "")] = on_grid(int(value) / 1000.0)
     return times

@@ -19,7 +19,7 @@ from game.embos.units_file import one_of
 from game.formats.bvh import read_bvh
 from game.formats.files import read_bytes, write_text
 from game.formats.yaml_source import Node, load_yaml, parse_yaml
-from game.tools.annotate.document import Document, Mark, Word, check_overlaps, on_grid
+from game.tools.annotate.document import LONGEST_S, Document, Mark, Word, check_overlaps, on_grid
 
 __all__ = ["autosave_path", "clear_autosave", "document_text", "open_document", "read_document", "recover", "save",
            "write_autosave"]  # fmt: skip
@@ -99,13 +99,13 @@ def _items(root: Node, key: str) -> list[Node]:
 
 def _mark(node: Node, fps: float) -> Mark:
     node.only(*_SPAN)
-    start, end = on_grid(node["start_s"].as_float(0.0)), on_grid(node["end_s"].as_float(0.0))
+    start, end = on_grid(node["start_s"].as_float(0.0, LONGEST_S)), on_grid(node["end_s"].as_float(0.0, LONGEST_S))
     if end <= start:
         raise node["end_s"].error("span", expected=f"an end after its start at {start:g} s")
     stroke, words, note, sure, frames = (node.get(k) for k in ("stroke_s", "words", "note", "confidence", "frames"))
     if frames is not None:
         check_frames(frames, start, end, fps)
-    stroke_s = None if stroke is None else on_grid(stroke.as_float(0.0))
+    stroke_s = None if stroke is None else on_grid(stroke.as_float(0.0, LONGEST_S))
     if stroke is not None and stroke_s is not None and not start <= stroke_s <= end:
         raise stroke.error("stroke", expected=f"a moment from {start:g} to {end:g} s")
     return Mark(
@@ -122,7 +122,7 @@ def _mark(node: Node, fps: float) -> Mark:
 
 def _word(node: Node) -> Word:
     node.only("word", "start_s", "end_s")
-    start, end = on_grid(node["start_s"].as_float(0.0)), on_grid(node["end_s"].as_float(0.0))
+    start, end = on_grid(node["start_s"].as_float(0.0, LONGEST_S)), on_grid(node["end_s"].as_float(0.0, LONGEST_S))
     if end <= start:
         raise node["end_s"].error("word", expected=f"an end after its start at {start:g} s")
     return Word(start, end, node["word"].as_str())
