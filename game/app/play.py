@@ -33,6 +33,7 @@ import pygame
 
 from game.app.arguments import parse_size
 from game.app.designer import warp_session
+from game.app.display_loss import watch_display
 from game.app.input import action_of
 from game.app.opening import open_session
 from game.app.pad import Pads
@@ -113,7 +114,8 @@ def run(args: argparse.Namespace) -> int:
         _loop(window)
 
     try:
-        play_until_closed(window, recorder, loop)
+        with watch_display(lambda: _keep(window, recorder)):
+            play_until_closed(window, recorder, loop)
     finally:
         with suppress(moderngl.Error, pygame.error):
             window.close()
@@ -132,9 +134,13 @@ def play_until_closed(window: Window, recorder: Recorder | None, loop: Callable[
     except (moderngl.Error, pygame.error) as error:
         raise MissingPart(f"the picture was lost ({error}); the game was saved, start it again to go on") from None
     finally:
-        window.keep()
-        if recorder is not None:
-            recorder.close(window.session)
+        _keep(window, recorder)
+
+
+def _keep(window: Window, recorder: Recorder | None) -> None:
+    window.keep()
+    if recorder is not None:
+        recorder.close(window.session)
 
 
 def _recorder(session: Session, args: argparse.Namespace) -> Recorder | None:
