@@ -1,14 +1,14 @@
 """Autoplay's eye on the body: which units were on stage between decisions, and why each began.
 
-The bodies of many talks live side by side: feelings and planner run for all of them in the same few array
-operations, at the step's own rate and with its own functions; only where a line begins or ends does a talk need a
-world of its own. The result is what ``step`` gives, talk by talk.
+The bodies of many talks live side by side, with the step's own functions and at its rate, but not in step with each
+other: each goes from one moment at which the planner may decide anew to its next one (game.app.body_ahead), and all
+are judged there in the same few array operations. The result is what ``step`` gives, talk by talk.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,16 +16,19 @@ from numpy.typing import NDArray
 
 from game.animation import Mode
 from game.app.loading import load_planner
+from game.app.body_ahead import TICKS, Ahead, first_tick_after
 from game.app.performance import factors_of, played_span
-from game.app.step import StepAssets, feelings_after, leaked_emotion, new_world, speech_stage
+from game.app.step import PEAK_S, StepAssets, line_cues, reaction_to, targets_of, timed_line
 from game.app.talk import TalkAssets, TalkState
-from game.app.world import TICK_S, Intent, World, enter_talk
-from game.core.emotion_space import with_neutral
-from game.embos import Decisions, Planner, PlannerSignal, PlannerState, greet, habit_of
+from game.app.world import TICK_S
+from game.embos import Planner, PlannerSignal, PlannerState, greet, habit_of
+from game.embos.draws import character_keys
+from game.story import Spoken
 
 __all__ = ["BATCH", "BodyObserver", "Watched"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
 
 NextBeat = Callable[[int, list["Watched"]], TalkState | None]
 
@@ -40,6 +43,9 @@ MAX_TICKS = 3000
 """A beat that is longer than this is broken off."""
 CROWDED = 0.8
 """Where fewer than this share of the bodies still have a talk, the others are left out."""
+BUSY = 0.4
+"""As long as more than this share of them have something to decide ahead, the others wait to be looked after."""
+TEXT_SPEED, LANGUAGE = "fast", "en"
 SEEN: dict[Mode, tuple[str, ...]] = {
     "full": ("posture", "gesture", "mannerism"), "body": ("posture", "gesture", "mannerism"),
     "gestures": ("gesture",), "face": (),
@@ -61,13 +67,14 @@ class Watched:
 
 @dataclass
 class _Actor:
-    """One talk's body: what of its world changes between lines. number: of the talk, whatever its row is by now."""
+    """One talk: what changes between lines. number: of the talk, whatever its row is by now."""
 
     number: int
-    world: World
-    watched: list[Watched]
+    watched: list[Watched] = field(default_factory=list)
+    talk: TalkState | None = None
+    queue: tuple[Spoken, ...] = ()
+    speaking: bool = False
     began: int = 0
-    over: bool = False
 
 
 @dataclass(frozen=True)
@@ -108,181 +115,184 @@ class BodyObserver:
 
 
 class _Bodies:
-    """N talks in step. All arrays have N rows; a row's world is asked only when a line begins or ends."""
+    """N talks, each at a tick of its own. All arrays have N rows; Python looks at a row where a line begins or ends.
+
+    tick: where the ticks ahead begin; due_s: when the present line has been heard out, −inf: one waits to begin;
+    speaks, over_tick: ticks at which that is so, and at which the player has looked long enough; over: their talk is.
+    """
 
     def __init__(
-        self,
-        observer: BodyObserver,
-        assets: StepAssets,
-        count: int,
-        beat: NextBeat,
-        seed: int,
-        first: int,
+        self, observer: BodyObserver, assets: StepAssets, count: int, beat: NextBeat, seed: int, first: int
     ) -> None:
         self.observer, self.assets, self.planner = observer, assets, observer.planner
         self.beat = beat
-        n, library = count, observer.planner.library
-        seeds = [(seed * 1_000_003 + first + i) & 0x7FFFFFFF for i in range(n)]
-        self.actors = [_Actor(i, new_world(assets, s, text_speed="fast"), []) for i, s in enumerate(seeds)]
+        n, library, person = count, observer.planner.library, assets.talk.person
+        self.actors = [_Actor(i) for i in range(n)]
         self.talks = list(self.actors)
-        keys = [actor.world.body.planner.key for actor in self.actors]
+        keys = [character_keys((seed * 1_000_003 + first + i) & 0x7FFFFFFF, 0, 1) for i in range(n)]
         self.state: PlannerState = self.planner.start(n, seed).renewed(key=np.concatenate(keys))
-        person = assets.talk.person
         self.habit = habit_of(self.planner, person.habit_units, person.habit_rate)
-        self.state = greet(self.state, self.habit, 0.0)
-        self.felt, self.shown = np.zeros((n, 6)), np.zeros((n, 6))
-        self.felt_target, self.shown_target = np.zeros((n, 6)), np.zeros((n, 6))
-        for row, actor in enumerate(self.actors):
-            self.felt[row], self.shown[row] = actor.world.felt, actor.world.shown[:6]
-        self.burst_s = np.full(n, -1e9)
-        self.due_s = np.full(n, np.inf)  # when the present line has been heard out; −inf: one waits to begin
-        self.over_tick = np.full(n, NEVER)  # when the player has looked long enough
-        self.fresh: list[int] = []  # rows whose beat begins in this tick
-        self.cue_row, self.cue_column = np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
-        self.cue_s = np.zeros(0)
-        self.lead_most_s = float(library.stroke_offset_s[library.gestures].max(initial=0.0))
-        self.layers = self.planner.tables.layers
-        self.seen = np.array([layer in SEEN[observer.mode] for layer in self.layers])
+        self.state = greet(self.state, self.habit, 0.0).copied()
+        self.ahead = Ahead.start(n, self.planner, person)
+        self.tick = np.zeros(n, dtype=np.int64)
+        self.due_s = np.full(n, np.inf)
+        self.speaks, self.over_tick = np.full(n, NEVER), np.zeros(n, dtype=np.int64)
+        self.over, self.fresh = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
+        seen = np.array([layer in SEEN[observer.mode] for layer in self.planner.tables.layers])
+        self.layers = np.flatnonzero(seen).tolist()
+        # What is seen of each unit: its name, or nothing of a rest unit and of none (the last one).
+        self.names = [None if u.is_rest else u.name for u in library.units] + [None]
+        self.seen = np.array([name is not None for name in self.names])[:, None] & seen
 
     def run(self) -> list[list[Watched]]:
-        """Tick until every talk has had its last beat."""
-        tick, left = 0, sum(self._next_beat(row, 0) for row in range(len(self.actors)))
-        while left:
-            time_s = tick * TICK_S
-            for row in np.flatnonzero(self.due_s < time_s).tolist():
-                self._speak(row, tick)
-            self.felt, self.shown = feelings_after(self.felt, self.felt_target, self.shown, self.shown_target)
-            since_s = time_s - self.burst_s
-            emotion = leaked_emotion(self.assets.talk.person, self.felt, self.shown, since_s)
-            signal = PlannerSignal(emotion, self._words(emotion, time_s), time_s, self.habit)
-            before = self.state
-            self.state, decisions = self.planner.advance(before, signal, TICK_S)
-            self._note(before, signal, decisions, tick)
-            tick += 1
-            self.fresh.clear()
-            for row in np.flatnonzero(self.over_tick <= tick).tolist():
-                if not self._next_beat(row, tick):
-                    left -= 1
-            if left < CROWDED * len(self.actors):
-                self._close_ranks()
+        """Until every talk has had its last beat."""
+        self._look_after(np.arange(len(self.actors)))
+        while self.actors:
+            busy = self.ahead.busy()
+            if busy.size > BUSY * len(self.actors):
+                self._decide(busy)
+            else:
+                self._look_after((~self.ahead.is_busy() & ~self.over).nonzero()[0])
         return [actor.watched for actor in self.talks]
 
-    def _close_ranks(self) -> None:
+    def _decide(self, rows: Ints) -> None:
+        """Each of the rows goes on to the next tick ahead in which its planner may decide anew, and decides."""
+        rows, at = self.ahead.next_due(rows, self.state)
+        early = self.fresh[rows] & (at != 0)
+        for row in rows[early].tolist():
+            self._note_standing(row)
+        rows, at = rows[at >= 0], at[at >= 0]
+        if not rows.size:
+            return
+        tick = self.tick[rows] + at
+        signal = PlannerSignal(*self.ahead.signal(rows, at), tick * TICK_S, self.habit)
+        # Why something begins is told from the state before it.
+        before = self.state.of(rows) if self.observer.explain else None
+        self.state = self.planner.judge(self.state, rows, signal, TICK_S, spend=True)
+        self._note(rows, before, signal)
+
+    def _look_after(self, rows: Ints) -> None:
+        """Lines and beats of the rows whose ticks ahead are through, then the next ticks ahead."""
+        self.tick[rows] += self.ahead.pass_on(rows)
+        for row in rows[self.over_tick[rows] <= self.tick[rows]].tolist():
+            self._next_beat(row)
+        self._speak(rows[(self.speaks[rows] <= self.tick[rows]) & ~self.over[rows]])
+        rows = rows[~self.over[rows]]
+        if rows.size:
+            left = np.minimum(self.speaks[rows], self.over_tick[rows]) - self.tick[rows]
+            self.ahead.look(rows, self.tick[rows], np.minimum(left, TICKS))
+        live = (~self.over).nonzero()[0]
+        if live.size < CROWDED * len(self.actors):
+            self._close_ranks(live)
+
+    def _close_ranks(self, live: Ints) -> None:
         """Bodies whose talk is over leave; the others go on as before."""
-        live = np.array([row for row, actor in enumerate(self.actors) if not actor.over], dtype=np.intp)
-        place = np.full(len(self.actors), -1, dtype=np.intp)
-        place[live] = np.arange(len(live))
         self.actors = [self.actors[row] for row in live]
-        self.fresh = [int(place[row]) for row in self.fresh]
-        for name in ("felt", "shown", "felt_target", "shown_target", "burst_s", "due_s", "over_tick"):
+        for name in ("tick", "due_s", "speaks", "over_tick", "over", "fresh"):
             setattr(self, name, getattr(self, name)[live])
-        cued = place[self.cue_row] >= 0
-        self.cue_row, self.cue_column = place[self.cue_row[cued]], self.cue_column[cued]
-        self.cue_s = self.cue_s[cued]
+        self.ahead.keep(live)
         self.state = self.state.of(live)
 
-    def _next_beat(self, row: int, tick: int) -> bool:
-        """The decision falls: what it led to is said from this tick on. False after the last one."""
-        actor = self.actors[row]
+    def _next_beat(self, row: int) -> None:
+        """The decision falls: what it led to is said from this tick on, or the talk is over."""
+        actor, tick = self.actors[row], int(self.tick[row])
         talk = self.beat(actor.number, actor.watched)
         if talk is None:
-            actor.over = True
-            self.over_tick[row], self.due_s[row] = NEVER, np.inf
-            return False
+            self.over[row] = True
+            return
         if not actor.watched:
-            actor.world = enter_talk(self.assets, actor.world, talk)
-        else:
-            actor.world = replace(actor.world, talk=talk, queue=talk.beat.lines)
+            self._feel(row, *targets_of(self.assets, talk))
+        actor.talk, actor.queue, actor.began = talk, talk.beat.lines, tick
         actor.watched.append(Watched())
-        actor.began = tick
-        self.over_tick[row] = tick + MAX_TICKS
-        self.fresh.append(row)
-        self._read_back(row, tick)
-        return True
+        self.fresh[row], self.over_tick[row] = True, tick + MAX_TICKS
+        if not actor.speaking:
+            self.due_s[row], self.speaks[row] = -np.inf, tick
+            if not actor.queue:
+                self._all_said(row)
 
-    def _speak(self, row: int, tick: int) -> None:
-        """A line begins or has been heard out: the step's own stage, on this talk's own world."""
-        actor = self.actors[row]
-        world = replace(
-            actor.world, tick=tick, felt=self.felt[row], shown=with_neutral(self.shown[row]),
-            burst_s=float(self.burst_s[row]),
-        )  # fmt: skip
-        actor.world = speech_stage(self.assets, world, Intent(proceed=world.speech is not None))
-        self._read_back(row, tick)
+    def _speak(self, rows: Ints) -> None:
+        """Lines begin or have been heard out."""
+        if not rows.size:
+            return
+        time_s = self.tick[rows] * TICK_S
+        emotion = self.ahead.leaked(rows, time_s)
+        lead_s = self.planner.library.stroke_lead_s(emotion)
+        for at, row in enumerate(rows.tolist()):
+            actor, now_s = self.actors[row], float(time_s[at])
+            if not actor.queue:
+                # Everything is said: what is felt now is what the next line will be judged by.
+                assert actor.talk is not None
+                self._feel(row, *targets_of(self.assets, actor.talk))
+                actor.speaking = False
+                self._all_said(row)
+                continue
+            line, actor.queue = actor.queue[0], actor.queue[1:]
+            timed, cues, start_s = timed_line(line, LANGUAGE, TEXT_SPEED), None, now_s
+            if line.speaker == "shopkeeper":
+                cues, start_s = line_cues(self.planner, timed, line.gesture, emotion[at], lead_s[at], now_s)
+            self.ahead.say(row, cues)
+            reaction = reaction_to(actor.talk, line, self.ahead.target[row, :6])
+            if reaction is not None:
+                self._feel(row, *reaction)
+                self.ahead.burst_s[row] = now_s + PEAK_S
+            actor.speaking = True
+            self.due_s[row] = start_s + timed.length_s + PATIENCE_S
+            self.speaks[row] = first_tick_after(self.due_s[row])
 
-    def _read_back(self, row: int, tick: int) -> None:
-        """From a talk's world into the arrays."""
-        actor, world = self.actors[row], self.actors[row].world
-        self.felt_target[row], self.shown_target[row] = world.felt_target, world.shown_target[:6]
-        self.burst_s[row] = world.burst_s
-        others = self.cue_row != row
-        rows, columns, times_s = self.cue_row[others], self.cue_column[others], self.cue_s[others]
-        if world.speech is not None:
-            self.due_s[row] = world.speech.started_s + world.speech.timed.length_s + PATIENCE_S
-            if world.speech.cues is not None:
-                cues = world.speech.cues
-                rows = np.concatenate([rows, np.full(len(cues.gesture), row)])
-                columns, times_s = np.concatenate([columns, cues.gesture]), np.concatenate([times_s, cues.time_s])
-        elif world.queue:
-            self.due_s[row] = -np.inf
-        else:
-            self.due_s[row] = np.inf
-            self._all_said(row)
-            self.over_tick[row] = min(tick + THINKING_TICKS, actor.began + MAX_TICKS)
-        self.cue_row, self.cue_column, self.cue_s = rows, columns, times_s
+    def _feel(self, row: int, felt: Floats, shown: Floats) -> None:
+        """What the body's feeling and the face go towards from now on."""
+        self.ahead.target[row, :6], self.ahead.target[row, 6:] = felt, shown[:6]
 
     def _all_said(self, row: int) -> None:
         """The last word is spoken: what is on stage now stays to be seen."""
-        library, seen = self.planner.library, self.actors[row].watched[-1]
-        for at, unit in enumerate(self.state.decisions.unit[row].tolist()):
-            if unit >= 0 and self.seen[at] and not library.is_rest[unit]:
-                seen.units[library.units[unit].name] = None
-                seen.quiet[library.units[unit].name] = None
+        actor = self.actors[row]
+        self.ahead.say(row, None)
+        self.due_s[row], self.speaks[row] = np.inf, NEVER
+        self.over_tick[row] = min(int(self.tick[row]) + THINKING_TICKS, actor.began + MAX_TICKS)
+        self._see(row, self.layers)
 
-    def _words(self, emotion: Floats, time_s: float) -> Floats:
-        """(N, G) word factors, as GestureCues.factors gives them row by row."""
-        library, config = self.planner.library, self.planner.config
-        words = np.zeros((len(self.actors), len(library.gestures)))
-        half_s = 0.5 * config.word_window_s
-        near = (self.cue_s >= time_s - half_s) & (self.cue_s <= time_s + self.lead_most_s + half_s)
-        if np.count_nonzero(near):
-            rows, columns = self.cue_row[near], self.cue_column[near]
-            units = library.gestures[columns]
-            weights = library.mix_weights(emotion[rows], units)
-            lead_s = (weights * library.stroke_offset_s[units]).sum(axis=-1)
-            open_now = np.abs(time_s - (self.cue_s[near] - lead_s)) <= half_s
-            words[rows[open_now], columns[open_now]] = 1.0
-        return words
-
-    def _note(self, before: PlannerState, signal: PlannerSignal, decisions: Decisions, tick: int) -> None:
-        """Who came on stage, and why."""
-        library = self.planner.library
-        new = decisions.started & self.seen & ~library.is_rest[decisions.unit]
-        rows = np.flatnonzero(new.any(axis=1))
-        reasons = dict[int, list[Any]]()
-        if self.observer.explain and rows.size:
-            reasons = dict(zip(rows.tolist(), self.planner.explain_chosen(before, signal, rows), strict=True))
-        for row in {*rows.tolist(), *self.fresh}:
-            actor = self.actors[row]
-            if actor.over:
-                continue  # the talk is over, its body merely goes on
-            watched = actor.watched[-1]
-            for at in range(len(self.layers)):
-                unit = int(decisions.unit[row, at])
-                if unit < 0 or library.is_rest[unit] or not self.seen[at] or not (actor.began == tick or new[row, at]):
-                    continue
-                watched.units[library.units[unit].name] = None
+    def _see(self, row: int, layers: Sequence[int]) -> None:
+        """What is on stage in these layers is seen in the present beat."""
+        watched, units = self.actors[row].watched[-1], self.state.decisions.unit[row].tolist()
+        for at in layers:
+            name = self.names[units[at]]
+            if name is not None:
+                watched.units[name] = None
                 if self.due_s[row] == np.inf:
-                    watched.quiet[library.units[unit].name] = None
-                if new[row, at] and row in reasons:
-                    chosen = reasons[row][at]
-                    watched.starts.append(
-                        {
-                            "time_s": round(signal.time_s, 3),
-                            "layer": chosen.layer,
-                            "unit": chosen.name,
-                            "factors": factors_of(chosen),
-                            "reason": chosen.reason,
-                            "source": played_span(library, decisions, row, at),
-                        }
-                    )
+                    watched.quiet[name] = None
+
+    def _note_standing(self, row: int) -> None:
+        """A beat's first tick in which nothing new comes on stage."""
+        self.fresh[row] = False
+        self._see(row, self.layers)
+
+    def _note(self, rows: Ints, before: PlannerState | None, signal: PlannerSignal) -> None:
+        """Who came on stage, and why."""
+        decisions = self.state.decisions
+        new = decisions.started[rows] & self.seen[decisions.unit[rows], np.arange(decisions.unit.shape[1])]
+        some = new.any(axis=1)
+        noted = (some | self.fresh[rows]).nonzero()[0]
+        for at in noted.tolist():
+            row = int(rows[at])
+            if self.fresh[row]:
+                self._note_standing(row)
+            else:
+                self._see(row, new[at].nonzero()[0].tolist())
+        if before is None or not np.count_nonzero(some):
+            return
+        who = some.nonzero()[0]
+        reasons = self.planner.explain_chosen(before, signal, who)
+        library, time_s = self.planner.library, np.asarray(signal.time_s)
+        for place, of in zip(who.tolist(), reasons, strict=True):
+            row = int(rows[place])
+            for at in new[place].nonzero()[0].tolist():
+                self.actors[row].watched[-1].starts.append(
+                    {
+                        "time_s": round(float(time_s[place]), 3),
+                        "layer": of[at].layer,
+                        "unit": of[at].name,
+                        "factors": factors_of(of[at]),
+                        "reason": of[at].reason,
+                        "source": played_span(library, decisions, row, at),
+                    }
+                )

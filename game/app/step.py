@@ -29,7 +29,8 @@ from game.story import Spoken, TimedText
 from game.story.timing import CHARS_PER_S
 
 __all__ = [
-    "STAGES", "StepAssets", "feelings_after", "leaked_emotion", "new_world", "speech_stage", "step", "targets_of",
+    "FELT_HALF_LIFE_S", "PEAK_S", "SHOWN_HALF_LIFE_S", "STAGES", "StepAssets", "feelings_after", "leaked_emotion",
+    "line_cues", "new_world", "reaction_to", "speech_stage", "step", "targets_of", "timed_line",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
@@ -39,6 +40,8 @@ FELT_HALF_LIFE_S = 0.28
 SHOWN_HALF_LIFE_S = 0.12
 BURST_S = 1.2
 """A reaction leaks strongest for about this long …"""
+PEAK_S = 0.3
+"""A reaction is at its peak so long after its line has begun."""
 BURST_GAIN = 0.45
 """… by this share of the felt emotion on top, and leaves a residue in the posture."""
 AFTER_LINE_S = 0.35
@@ -114,15 +117,21 @@ def speech_stage(assets: StepAssets, world: World, intent: Intent) -> World:
         return world
     line, rest = world.queue[0], world.queue[1:]
     world = replace(world, queue=rest, speech=_speech(assets, world, line), backlog=(*world.backlog[-99:], line))
-    if line.speaker != "player" and world.talk is not None and world.talk.record:
-        # Cause before effect: the reaction shows when the shopkeeper begins to answer.
-        record = dict(world.talk.record)
-        felt = np.asarray(record["felt"])[:6]
-        if not np.array_equal(felt, world.felt_target):
-            return replace(
-                world, felt_target=felt, shown_target=np.asarray(record["shown"]), burst_s=world.time_s + 0.3
-            )
-    return world
+    # Cause before effect: the reaction shows when the shopkeeper begins to answer.
+    reaction = reaction_to(world.talk, line, world.felt_target)
+    if reaction is None:
+        return world
+    felt, shown = reaction
+    return replace(world, felt_target=felt, shown_target=shown, burst_s=world.time_s + PEAK_S)
+
+
+def reaction_to(talk: TalkState | None, line: Spoken, felt_target: Floats) -> tuple[Floats, Floats] | None:
+    """(6,) felt and (7,) shown from a line on; None where it changes nothing. felt_target: (6,) before it."""
+    if talk is None or line.speaker == "player" or not talk.record:
+        return None
+    record = dict(talk.record)
+    felt = np.asarray(record["felt"])[:6]
+    return None if np.array_equal(felt, felt_target) else (felt, np.asarray(record["shown"]))
 
 
 def _settle(assets: StepAssets, world: World) -> World:
@@ -133,37 +142,52 @@ def _settle(assets: StepAssets, world: World) -> World:
 
 
 def _speech(assets: StepAssets, world: World, line: Spoken) -> Speech:
-    factor = TEXT_SPEED[world.text_speed]
-    speed = CHARS_PER_S[world.language] * (1.0 if factor is None else factor)
-    timed = _timed(line.text(world.language), world.language, speed)
+    timed = timed_line(line, world.language, world.text_speed)
     cues, visemes, start_s = None, None, world.time_s
     if line.speaker == "shopkeeper":
-        cues, start_s = _cues(assets, world, timed, line.gesture)
+        emotion = body_emotion(assets, world)
+        lead_s = assets.planner.library.stroke_lead_s(emotion[None, :])[0]
+        cues, start_s = line_cues(assets.planner, timed, line.gesture, emotion, lead_s, world.time_s)
         if assets.face is not None:
             visemes = viseme_track(timed.text, timed.language, timed.char_s, timed.length_s)
-    return Speech(line, timed, start_s, cues, visemes, hurried=factor is None)
+    return Speech(line, timed, start_s, cues, visemes, hurried=TEXT_SPEED[world.text_speed] is None)
 
 
+def timed_line(line: Spoken, language: str, text_speed: str) -> TimedText:
+    """A line in time."""
+    factor = TEXT_SPEED[text_speed]
+    return _timed(line.text(language), language, CHARS_PER_S[language] * (1.0 if factor is None else factor))
+
+
+# The same lines are spoken again and again.
 @lru_cache(maxsize=1024)
-def _timed(text: str, language: str, chars_per_s: float) -> TimedText:
-    """A line in time; the same lines are spoken again and again."""
+def _timed(text: str, language: str, chars_per_s: float | None) -> TimedText:
     return TimedText(text, language, chars_per_s)
 
 
-def _cues(assets: StepAssets, world: World, timed: TimedText, named: str | None = None) -> tuple[GestureCues, float]:
+def line_cues(
+    planner: Planner, timed: TimedText, named: str | None, emotion: Floats, lead_s: Floats, now_s: float
+) -> tuple[GestureCues, float]:
     """What the line's words call up, and when it begins: hands set out before the voice (preparation).
 
-    named: a gesture that the script asks for by name; it falls on the line's first words.
+    named: a gesture that the script asks for by name; it falls on the line's first words. emotion: (7,) in the body;
+    lead_s: (G,) from start to stroke in that emotion.
     """
-    library, config = assets.planner.library, assets.planner.config
-    emotion = body_emotion(assets, world)
-    shown = library.exists[library.gestures] @ emotion > PRESENT
-    cues = GestureCues.from_line(library, timed.text, timed.char_s, timed.language, shown=shown, stress=config.stress)
-    if named is not None:
-        cues = cues.adding(library, named, min(NAMED_GESTURE_S, timed.length_s))
-    lead_in_s = cues.preparation_s(library.stroke_lead_s(emotion[None, :])[0], shown)
-    start_s = world.time_s + min(lead_in_s, config.lead_in_s)
+    shown = planner.library.known_gestures @ emotion > PRESENT
+    cues = _calls(planner, timed.text, timed.language, timed.chars_per_s, named, shown.tobytes())
+    start_s = now_s + min(cues.preparation_s(lead_s, shown), planner.config.lead_in_s)
     return cues.later(start_s), start_s
+
+
+@lru_cache(maxsize=4096)
+def _calls(
+    planner: Planner, text: str, language: str, chars_per_s: float | None, named: str | None, shown: bytes
+) -> GestureCues:
+    """A line's cues from its start on; shown: (G,) bool as bytes, gestures that the feeling knows."""
+    timed, known = _timed(text, language, chars_per_s), np.frombuffer(shown, dtype=bool)
+    library, stress = planner.library, planner.config.stress
+    cues = GestureCues.from_line(library, text, timed.char_s, language, shown=known, stress=stress)
+    return cues if named is None else cues.adding(library, named, min(NAMED_GESTURE_S, timed.length_s))
 
 
 def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:

@@ -44,13 +44,11 @@ def explain(
     tick to learn why a unit started, the state after it to learn why it stays. Changes nothing.
     """
     t = planner.tables
-    rows = np.array([character])
-    state = planner.prepared(state, signal)
-    factors = planner.evaluate(state, rows, signal.words[rows], planner.moment(signal.time_s, dt_s), signal.habit)
+    state, signal, factors = _judged(planner, state, signal, np.array([character]), dt_s)
     result: list[list[Candidate]] = []
     for at in range(len(t.layers)):
         candidates = [
-            _candidate(planner, state, factors, 0, character, at, place, signal)
+            _candidate(planner, state, factors, 0, at, place, signal)
             for place in range(t.width)
             if t.unit[at * t.width + place] >= 0
         ]
@@ -63,16 +61,23 @@ def explain_chosen(
 ) -> list[list[Candidate]]:
     """For each of the characters (R,), what its layers chose in the tick and why; explain() without the losers."""
     t = planner.tables
-    state = planner.prepared(state, signal)
-    words, now = signal.words[characters], planner.moment(signal.time_s, dt_s)
-    factors = planner.evaluate(state, characters, words, now, signal.habit)
+    state, signal, factors = _judged(planner, state, signal, characters, dt_s)
     return [
         [
-            _candidate(planner, state, factors, row, character, at, int(factors.chosen[row, at]) - at * t.width, signal)
+            _candidate(planner, state, factors, row, at, int(factors.chosen[row, at]) - at * t.width, signal)
             for at in range(len(t.layers))
         ]
-        for row, character in enumerate(characters.tolist())
+        for row in range(len(characters))
     ]
+
+
+def _judged(
+    planner: Planner, state: PlannerState, signal: PlannerSignal, characters: NDArray[np.intp], dt_s: float
+) -> tuple[PlannerState, PlannerSignal, Factors]:
+    """State, signal and factors of these characters alone."""
+    few, own = planner.prepared(state, signal, characters), signal.of(characters)
+    now = planner.moment(np.full(len(characters), own.time_s), dt_s)
+    return few, own, planner.evaluate(few, np.arange(len(characters)), own.words, now, own.habit)
 
 
 def _candidate(
@@ -80,12 +85,11 @@ def _candidate(
     state: PlannerState,
     factors: Factors,
     row: int,
-    character: int,
     at: int,
     place: int,
     signal: PlannerSignal,
 ) -> Candidate:
-    """The unit at a place of a layer; row: the character's in the factors."""
+    """The unit at a place of a layer; row: the character's in state, signal and factors."""
     t = planner.tables
     slot = at * t.width + place
     unit = int(t.unit[slot])
@@ -100,8 +104,8 @@ def _candidate(
         state=float(one.state[0, at, place]),
         score=float(one.score[0, at, place]),
         chosen=bool(slot == one.chosen[0, at]),
-        reason=_reason(planner, state, one, character, at, place, signal),
-        source=_source(planner, state, character, slot),
+        reason=_reason(planner, state, one, row, at, place, signal),
+        source=_source(planner, state, row, slot),
     )
 
 
@@ -130,7 +134,8 @@ def _reason(
     place: int,
     signal: PlannerSignal,
 ) -> str:
-    t, time_s = planner.tables, signal.time_s
+    t = planner.tables
+    time_s = float(signal.time_s[character] if isinstance(signal.time_s, np.ndarray) else signal.time_s)
     slot, running = at * t.width + place, int(state.running[character, at])
     chosen = int(factors.chosen[0, at])
     waits_s = float(state.wait_s[character, slot]) - time_s

@@ -95,6 +95,13 @@ class UnitLibrary:
         return np.array([i for i, u in enumerate(self.units) if u.layer == "gesture" and not u.is_rest], dtype=np.intp)
 
     @cached_property
+    def known_gestures(self) -> Floats:
+        """(G, 7) 1 where an emotion shows a gesture, else 0."""
+        known = self.exists[self.gestures].astype(np.float64)
+        known.setflags(write=False)
+        return known
+
+    @cached_property
     def _word_indices(self) -> Mapping[str, WordIndex]:
         words: dict[str, list[tuple[int, str]]] = {}
         for column, unit in enumerate(self.gestures):

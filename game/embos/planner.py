@@ -1,14 +1,13 @@
 """The planner: eq. 1 for every layer, for one character or for many with the same few array operations.
 
 Nothing in eq. 1 changes between two of these events: a unit's duration or waiting time ends, the emotion moves,
-a word comes or goes. So a character is only judged anew when one of them has come; in between the decision
-stands. The result is the same as judging every frame.
+a word comes or goes. So a character is only judged anew when one of them has come that can change the decision; in
+between it stands. The result is the same as judging every frame.
 """
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,10 @@ Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
 
+Time = TypeVar("Time", float, Floats)
+
+NOBODY: Ints = np.zeros(0, dtype=np.intp)
+NOBODY.setflags(write=False)
 LEAP = 0.35
 """A change of any of the seven emotions beyond this is one that strikes."""
 
@@ -63,57 +66,86 @@ class Planner:
             phi_state=np.zeros((n, t.slots)),
             words=np.zeros((n, t.gestures.stop - t.gestures.start)),
             next_s=np.full(n, -np.inf),
+            calm=np.zeros(n, dtype=bool),
             soonest_s=-np.inf,
             decisions=decisions,
         )
 
     def advance(
-        self, state: PlannerState, signal: PlannerSignal, dt_s: float = TICK_S
+        self, state: PlannerState, signal: PlannerSignal, dt_s: float = TICK_S, *, spend: bool = False
     ) -> tuple[PlannerState, Decisions]:
         """One tick: eq. 1 where something has happened, the standing decision elsewhere.
 
+        spend: the old state is needed no more, so that its arrays may be written to (a crowd's are large).
         Raises BadInput for a signal of the wrong shape.
         """
         n = len(state)
-        emotion, words = signal.emotion, signal.words
-        if emotion.shape != (n, 7) or words.shape != state.words.shape:
+        if signal.emotion.shape != (n, 7) or signal.words.shape != state.words.shape:
             raise BadInput(
                 "planner signal",
                 expected=f"emotion {(n, 7)} and words {state.words.shape}",
-                seen=f"{emotion.shape} and {words.shape}",
+                seen=f"{signal.emotion.shape} and {signal.words.shape}",
             )
-        now = self.moment(signal.time_s, dt_s)
-        said_anew, moved_by = words != state.words, np.abs(emotion - state.emotion)
-        new_words = np.count_nonzero(said_anew)
-        looking = self._looks(signal.time_s, dt_s)
-        moving = looking and np.count_nonzero(moved_by > self.config.tolerance)
-        all_begun = state.soonest_s > -np.inf
-        if not new_words and not moving and all_begun and (not looking or now <= state.soonest_s):
-            return _standing(state)
-        fresh = (state.starts == 0).all(axis=1)  # a posture starts in everyone's first tick
-        due = state.next_s < now if looking else fresh
-        moved = moved_by.max(axis=1) > self.config.tolerance if looking else fresh
-        due = due | moved
-        state = self._settle(self._feel(state, emotion, moved), fresh, signal.time_s)
-        if new_words:
-            due = due | said_anew.any(axis=1)
-            state = state.renewed(words=words.copy())
-        rows = due.nonzero()[0]
-        # Pieces that stay in the cache; a character's result does not depend on its piece.
-        pieces = [rows[i : i + CHUNK] for i in range(0, rows.size, CHUNK)]
-        judged = [self.evaluate(state, piece, words[piece], now, signal.habit) for piece in pieces]
-        return self._apply(state, rows, judged, signal.time_s, now)
+        said = signal.words != state.words
+        spoken = np.count_nonzero(said)
+        rows = self._due(state, signal, dt_s, said if spoken else None)
+        if rows.size:
+            state = self.judge(state, rows, signal if rows.size == n else signal.of(rows), dt_s, spend=spend)
+        elif np.count_nonzero(state.decisions.started):
+            state = state.standing()
+        if spoken:
+            state = state.renewed(words=signal.words.copy())
+        return state, state.decisions
 
-    def moment(self, time_s: float, dt_s: float) -> float:
+    def _due(self, state: PlannerState, signal: PlannerSignal, dt_s: float, said: Bools | None) -> Ints:
+        """(R,) whose decisions may change in this tick. said: (n, G) words that have come or gone, None for none."""
+        time_s = float(signal.time_s)  # one for all here
+        now, looking = self.moment(time_s, dt_s), self._looks(time_s, dt_s)
+        far = np.abs(signal.emotion - state.emotion) > self.config.tolerance
+        moving = looking and np.count_nonzero(far)
+        if said is None and not moving and state.soonest_s > -np.inf and (not looking or now <= state.soonest_s):
+            return NOBODY
+        due = state.next_s < now if looking else state.fresh()  # a posture starts in everyone's first tick
+        if moving:
+            due = due | far.any(axis=1)
+        if said is not None:
+            # A word that goes is heard by those whom it may move, or who look at the clock only now and then.
+            ending = ~state.calm | (state.next_s < now)
+            due = due | (signal.words > state.words).any(axis=1) | (said.any(axis=1) & ending)
+        return due.nonzero()[0]
+
+    def judge(
+        self, state: PlannerState, rows: Ints, signal: PlannerSignal, dt_s: float = TICK_S, *, spend: bool = False
+    ) -> PlannerState:
+        """Eq. 1 for the characters ``rows`` (R,); the signal has R rows and may bring each a time of its own.
+
+        Only these stand in ``decisions.started``. Who has nothing to decide may be judged too and stays as they are.
+        """
+        if not spend:
+            state = state.copied()
+        time_s = np.full(rows.size, signal.time_s)
+        self._feel(state, rows, signal.emotion, self._looks(signal.time_s, dt_s))
+        self._settle(state, rows, time_s)
+        state.words[rows] = signal.words
+        now = self.moment(time_s, dt_s)
+        # Pieces that stay in the cache; a character's result does not depend on its piece.
+        judged = []
+        for first in range(0, rows.size, CHUNK):
+            piece = slice(first, first + CHUNK)
+            judged.append(self.evaluate(state, rows[piece], signal.words[piece], now[piece], signal.habit))
+        self._apply(state, rows, judged, time_s, now)
+        return state.renewed(soonest_s=float(state.next_s.min()))
+
+    def moment(self, time_s: Time, dt_s: float) -> Time:
         """Thresholds before this moment count as passed: half a look ahead, so that lengths are right on average."""
         return time_s + 0.5 * max(self.config.look_s, dt_s)
 
-    def _looks(self, time_s: float, dt_s: float) -> bool:
-        """Whether times and emotions are looked at in this tick (config.look_s)."""
+    def _looks(self, time_s: float | Floats, dt_s: float) -> Any:
+        """Whether times and emotions are looked at in this tick (config.look_s): True, or bool for each time."""
         look_s = self.config.look_s
         if look_s <= dt_s:
             return True
-        return math.floor((time_s + 1e-6) / look_s) > math.floor((time_s - dt_s + 1e-6) / look_s)
+        return np.floor((time_s + 1e-6) / look_s) > np.floor((time_s - dt_s + 1e-6) / look_s)
 
     def explain(
         self, state: PlannerState, signal: PlannerSignal, character: int, dt_s: float = TICK_S
@@ -127,36 +159,40 @@ class Planner:
         """Why, for several characters (R,) at once: the chosen candidate of each layer only."""
         return explain_chosen(self, state, signal, characters, dt_s)
 
-    def prepared(self, state: PlannerState, signal: PlannerSignal) -> PlannerState:
-        """The state as eq. 1 finds it in this tick: the emotion noted, whoever begins settled."""
-        moved = np.abs(signal.emotion - state.emotion).max(axis=1) > self.config.tolerance
-        fresh = (state.starts == 0).all(axis=1)
-        return self._settle(self._feel(state, signal.emotion, moved), fresh, signal.time_s)
+    def prepared(self, state: PlannerState, signal: PlannerSignal, rows: Ints) -> PlannerState:
+        """Some characters as eq. 1 finds them in this tick: the emotion noted, whoever begins settled."""
+        few, everyone = state.of(rows), np.arange(len(rows))
+        self._feel(few, everyone, signal.emotion[rows], True)
+        self._settle(few, everyone, np.full(len(rows), signal.of(rows).time_s))
+        return few
 
-    def _feel(self, state: PlannerState, emotion: Floats, moved: Bools) -> PlannerState:
-        """φ_state anew for the characters whose emotion has moved, (n,) bool."""
-        rows = moved.nonzero()[0]
-        if rows.size == 0:
-            return state
-        felt, phi = state.emotion.copy(), state.phi_state.copy()
-        felt[rows] = emotion[rows]
-        phi[rows] = self.tables.phi_state(felt[rows])
-        return state.renewed(emotion=felt, phi_state=phi)
+    def _feel(self, state: PlannerState, rows: Ints, emotion: Floats, looking: Any) -> None:
+        """φ_state anew for those of the rows whose emotion, (R, 7), has moved or is looked at for the first time."""
+        moved = np.abs(emotion - state.emotion[rows]).max(axis=1) > self.config.tolerance
+        if looking is not True:
+            moved &= looking | state.fresh()[rows]
+        some = moved.nonzero()[0]
+        if some.size:
+            who, felt = rows[some], emotion[some]
+            state.emotion[who] = felt
+            state.phi_state[who] = self.tables.phi_state(felt)
 
-    def _settle(self, state: PlannerState, fresh: Bools, time_s: float) -> PlannerState:
+    def _settle(self, state: PlannerState, among: Ints, time_s: Floats) -> None:
         """Some way through its waiting time, for each unit of the settled layers of characters about to begin.
 
         Where the emotion has leapt since, units that have not run yet come sooner: a feeling that strikes shows.
         """
         t, slots = self.tables, self.tables.settled
-        leapt = np.abs(state.emotion - state.settled).max(axis=1) > LEAP
-        rows = (fresh | leapt).nonzero()[0]
-        if slots.size == 0 or rows.size == 0:
-            return state
+        if slots.size == 0:
+            return
+        leapt = np.abs(state.emotion[among] - state.settled[among]).max(axis=1) > LEAP  # or has never been settled
+        if not np.count_nonzero(leapt):
+            return
+        rows, time_s = among[leapt], time_s[leapt, None]
         weights = mix_weights(state.emotion[rows, None], t.intensity[slots], t.exists[slots], self.config.radius)
         period_s = mix(t.timing_s[slots, 0] + t.timing_s[slots, 1], weights)
         who, which = np.indices((len(rows), len(slots))).reshape(2, -1)
-        first = fresh[rows]
+        first = state.fresh()[rows]
         # Events of their own, before the first start.
         event = np.where(first, -1, -2).astype(np.int64)[who]
         chance = uniform(state.key[rows[who]], slots[which], event, 1).reshape(period_s.shape)
@@ -164,26 +200,26 @@ class Planner:
         drawn_s = time_s + chance * period_s * np.where(first, 1.0, self.config.eager)[:, None]
         old_s = state.wait_s[at]
         sooner = state.untried[at] & (first[:, None] | (drawn_s < old_s))
-        wait_s, settled = state.wait_s.copy(), state.settled.copy()
-        wait_s[at] = np.where(sooner, drawn_s, old_s)
-        settled[rows] = state.emotion[rows]
-        return state.renewed(wait_s=wait_s, settled=settled)
+        state.wait_s[at] = np.where(sooner, drawn_s, old_s)
+        state.settled[rows] = state.emotion[rows]
 
     def evaluate(
-        self, state: PlannerState, rows: Ints, words: Floats, now: float, habit: Habit | None = None
+        self, state: PlannerState, rows: Ints, words: Floats, now: float | Floats, habit: Habit | None = None
     ) -> Factors:
-        """Eq. 1 for some characters: (R,) rows, (R, G) their word factors -> all factors and the slots chosen."""
+        """Eq. 1 for some characters: (R,) rows, (R, G) their word factors, now: the moment, or (R,) moments.
+
+        -> all factors and the slots chosen.
+        """
         t, config = self.tables, self.config
         count, layers, width = len(rows), len(t.layers), t.width
-        # Everybody in order (a character alone, above all) is looked at in place instead of gathered.
-        some: Ints | slice = slice(None) if count == len(state) else rows
-        running, wait_s, marks_s = state.running[some], state.wait_s[some], state.marks_s[some]
-        ahead = marks_s >= now
+        late = np.asarray(now)[..., None]
+        running, wait_s, marks_s = state.running[rows], state.wait_s[rows], state.marks_s[rows]
+        ahead = marks_s >= late[..., None]
         within, held = ahead[..., 0], ahead[..., 1]
-        waits = wait_s >= now
+        waits = wait_s >= late
+        first = np.arange(0, count * t.slots, t.slots)[:, None]  # of each character's slots, all in one row
         time = np.where(waits, t.minimum, config.steady)
-        row, layer = within.nonzero()
-        time[row, running[row, layer]] = 1.0  # keep going
+        time.ravel()[(first + running)[within]] = 1.0  # keep going
         if np.count_nonzero(within[:, t.gesture_layer]):
             # A gesture under way runs to its end though its word has passed.
             under_way = running[:, t.gesture_layer, None] == t.gesture_slots
@@ -196,7 +232,7 @@ class Planner:
         score = (time * phi).reshape(count, layers, width)
         score *= follow
         linkage: list[Floats | None] = []
-        chosen = np.empty_like(running)
+        chosen, beaten = np.empty_like(running), np.zeros(running.shape, dtype=bool)
         for at in range(layers):  # a layer depends on those above it: three steps, never more
             link = None
             for above in range(at):
@@ -205,107 +241,88 @@ class Planner:
             if link is not None:
                 score[:, at] *= link
             linkage.append(link)
-            best = score[:, at].argmax(axis=1) + at * width
-            mine = running[:, at]
-            if np.count_nonzero(best != mine):
-                best = np.where(self._kept(at, mine, best, score[:, at], time, link, held[:, at]), mine, best)
+            best, mine = score[:, at].argmax(axis=1) + at * width, running[:, at]
+            other = (best != mine).nonzero()[0]
+            if other.size:
+                places = first[other, 0]
+                keep = self._kept(at, mine[other], best[other], places, score, time, held[other, at])
+                if link is not None:
+                    keep &= link[other, np.minimum(mine[other] - at * width, width - 1)] > 0.0
+                stay = other[keep]
+                best[stay] = mine[stay]
+                beaten[stay, at] = True
             chosen[:, at] = best
+        place = first + chosen
         # A unit that wins again after its waiting time starts again; while it waits it is merely kept.
         again = (chosen == running) & ~within & t.real[chosen]
         if np.count_nonzero(again):
-            again &= time[np.arange(count)[:, None], chosen] == config.steady
-        next_s = np.where(waits, wait_s, np.inf).min(axis=1)
-        next_s = np.minimum(next_s, np.where(ahead, marks_s, np.inf).min(axis=(1, 2)))
+            again &= time.ravel()[place] == config.steady
+        started = (chosen != running) | again
+        anew = started.any(axis=1)
+        # What can change the decision by time alone: the end of a duration, the least time of a unit that is beaten,
+        # the end of a wait after which a unit would score as much as the one chosen. Who starts something is judged
+        # from another unit next time, so there every end counts.
+        bar = score.reshape(-1)[place] * t.reach
+        bar[anew] = -1.0
+        waits &= (score >= bar[..., None]).reshape(waits.shape)
+        ahead[..., 1] &= beaten | anew[:, None]
+        next_s = np.where(ahead, marks_s, np.inf).min(axis=(1, 2))
+        who, slot = waits.nonzero()
+        np.minimum.at(next_s, who, wait_s[who, slot])
+        gesture = chosen[:, t.gesture_layer]
+        calm = ~(anew | beaten[:, t.gesture_layer]) & (within[:, t.gesture_layer] | ~t.real[gesture])
         shape = (count, layers, width)
-        return Factors(follow, time.reshape(shape), phi.reshape(shape), linkage, score, chosen, within, again, next_s)
+        return Factors(
+            follow, time.reshape(shape), phi.reshape(shape), linkage, score, chosen, within, started, next_s, calm
+        )
 
-    def _kept(
-        self, at: int, mine: Ints, best: Ints, score: Floats, time: Floats, link: Floats | None, held: NDArray[Any]
-    ) -> NDArray[Any]:
-        """(R,) bool: the running slot stays although another has the best score."""
+    def _kept(self, at: int, mine: Ints, best: Ints, first: Ints, score: Floats, time: Floats, held: Bools) -> Bools:
+        """(K,) bool: the running slot stays although another has the best score. first: of each one's slots."""
         t = self.tables
-        each, ran = np.arange(len(mine)), mine < t.slots
-        place = np.where(ran, mine - at * t.width, 0)
-        score_mine, score_best = score[each, place], score[each, best - at * t.width]
+        ran, score = mine < t.slots, score.reshape(-1)
+        score_mine, score_best = score[first + np.where(ran, mine, 0)], score[first + best]
         # Inside the least time; or nothing has any score at all (an emotion no take has shown); or the best is
         # itself waiting. Filling such gaps with it would give the strongest unit of an emotion more time than it
         # has in the take (random takes: shares agree at r = 0.94; with the running one kept 0.98, worst 0.95).
-        gap = (time[each, best] <= t.minimum[at * t.width]) & (score_mine > 0.0)
-        keep = ran & (held | gap | (score_best <= 0.0))
-        return np.asarray(keep if link is None else keep & (link[each, place] > 0.0))
+        gap = (time.reshape(-1)[first + best] <= t.minimum[at * t.width]) & (score_mine > 0.0)
+        return np.asarray(ran & (held | gap | (score_best <= 0.0)))
 
-    def _apply(
-        self, state: PlannerState, rows: Ints, judged: list[Factors], time_s: float, now: float
-    ) -> tuple[PlannerState, Decisions]:
+    def _apply(self, state: PlannerState, rows: Ints, judged: list[Factors], time_s: Floats, now: Floats) -> None:
         """Start what was chosen, set durations and waiting times, note when to look again."""
-        chosen, again, soon = (
+        chosen, started, next_s, calm = (
             getattr(judged[0], name) if len(judged) == 1 else np.concatenate([getattr(f, name) for f in judged])
-            for name in ("chosen", "again", "next_s")
+            for name in ("chosen", "started", "next_s", "calm")
         )
-        next_s = state.next_s.copy()
-        next_s[rows] = soon
-        changed = chosen != state.running[rows]
-        started = changed | again
-        row, layer = started.nonzero()
-        if row.size == 0:
-            return _standing(state.renewed(next_s=next_s, soonest_s=float(next_s.min())))
-        flags = np.zeros(state.running.shape, dtype=bool)
-        flags[rows] = started
-        at = (row, layer)
-        state, soon = self._begin(state, rows[row], layer, chosen[at], changed[at], flags, time_s, now)
-        np.minimum.at(next_s, rows[row], soon)
-        state = state.renewed(next_s=next_s, soonest_s=float(next_s.min()))
-        return state, state.decisions
+        state.next_s[rows], state.calm[rows] = next_s, calm
+        state.decisions.started[:] = False
+        event, layer = started.nonzero()
+        if event.size:
+            state.decisions.started[rows] = started
+            self._begin(state, rows[event], layer, chosen[event, layer], time_s[event], now[event])
 
-    def _begin(
-        self,
-        state: PlannerState,
-        who: Ints,
-        layer: Ints,
-        slot: Ints,
-        changed: NDArray[Any],
-        flags: Bools,
-        time_s: float,
-        now: float,
-    ) -> tuple[PlannerState, Floats]:
-        """Start slots (S,) in layers (S,) of characters (S,) -> the new state, and (S,) when to look again."""
-        t, old = self.tables, state.decisions
-        running, marks_s, wait_s = state.running.copy(), state.marks_s.copy(), state.wait_s.copy()
-        starts, numbers, unit = state.starts.copy(), old.numbers.copy(), old.unit.copy()
-        untried = state.untried.copy()
-        untried[who, slot] = False
-        soon = np.full(len(who), np.inf)
+    def _begin(self, state: PlannerState, who: Ints, layer: Ints, slot: Ints, time_s: Floats, now: Floats) -> None:
+        """Start slots (S,) in layers (S,) of characters (S,) at their times."""
+        t, at = self.tables, (who, layer)
+        state.untried[who, slot] = False
         # A unit cut short has had its duration: its waiting time begins now.
-        ended_s = marks_s[who, layer, 0]
-        cut = (changed & (ended_s >= now)).nonzero()[0]
+        ended_s, left = state.marks_s[who, layer, 0], state.running[at]
+        cut = ((left != slot) & (ended_s >= now)).nonzero()[0]
         if cut.size:
-            left = (who[cut], running[who[cut], layer[cut]])
-            wait_s[left] -= ended_s[cut] - time_s
-            soon[cut] = np.maximum(wait_s[left], now)
-        counter = starts[who, layer]
+            place = (who[cut], left[cut])
+            state.wait_s[place] -= ended_s[cut] - time_s[cut]
+            np.minimum.at(state.next_s, who[cut], np.maximum(state.wait_s[place], now[cut]))
+        counter = state.starts[at]
         chance = uniform(state.key[who], layer, counter, 3)
+        numbers = np.empty((len(who), 11))
         weights = mix_weights(state.emotion[who], t.intensity[slot], t.exists[slot], self.config.radius)
         mixed = mix(t.timing_s[slot], weights[:, None, :])  # (S, 3): L_d, L_w, start to stroke; 0 for rest
         mixed[:, :2] *= factor(chance[:, :2], t.sigma[slot])
-        duration_s = np.maximum(mixed[:, 0], t.least_s[slot])
-        end_s = time_s + duration_s
-        new_marks = np.stack([end_s, time_s + t.least_s[slot]], axis=1)
-        running[who, layer], starts[who, layer], unit[who, layer] = slot, counter + 1, t.unit[slot]
-        marks_s[who, layer], wait_s[who, slot] = new_marks, end_s + mixed[:, 1]
-        start_s = np.full_like(end_s, time_s)
-        head = np.stack([start_s, duration_s, chance[:, 2], mixed[:, 2]], axis=1)
-        numbers[who, layer] = np.concatenate([head, weights], axis=1)
-        soon = np.minimum(soon, np.where(new_marks >= now, new_marks, np.inf).min(axis=1))
-        decisions = Decisions(unit, flags, numbers)
-        state = state.renewed(
-            running=running, marks_s=marks_s, wait_s=wait_s, untried=untried, starts=starts, decisions=decisions
-        )
-        return state, soon
-
-
-def _standing(state: PlannerState) -> tuple[PlannerState, Decisions]:
-    """The tick in which nothing starts."""
-    old = state.decisions
-    if np.count_nonzero(old.started):
-        state = state.renewed(decisions=Decisions(old.unit, np.zeros_like(old.started), old.numbers))
-    return state, state.decisions
+        least_s = t.least_s[slot]
+        numbers[:, 0], numbers[:, 1], numbers[:, 2] = time_s, np.maximum(mixed[:, 0], least_s), chance[:, 2]
+        numbers[:, 3], numbers[:, 4:] = mixed[:, 2], weights
+        marks_s = np.empty((len(who), 2))
+        marks_s[:, 0], marks_s[:, 1] = time_s + numbers[:, 1], time_s + least_s
+        state.running[at], state.starts[at], state.marks_s[at] = slot, counter + 1, marks_s
+        state.wait_s[who, slot] = marks_s[:, 0] + mixed[:, 1]
+        state.decisions.unit[at], state.decisions.numbers[at] = t.unit[slot], numbers
+        np.minimum.at(state.next_s, who, np.where(marks_s >= now[:, None], marks_s, np.inf).min(axis=1))

@@ -29,12 +29,18 @@ class Habit:
 @dataclass(frozen=True, eq=False)
 class PlannerSignal:
     """What a tick brings. emotion: (n, 7) felt; words: (n, G) word factor per gesture unit, 1 at its word's moment,
-    else 0 (columns as library.gestures); time_s: the moment of this tick; habit: what these characters do anyway."""
+    else 0 (columns as library.gestures); time_s: the moment of this tick, or (n,) each character's own; habit: what
+    these characters do anyway."""
 
     emotion: Floats
     words: Floats
-    time_s: float
+    time_s: float | Floats
     habit: Habit | None = None
+
+    def of(self, rows: Ints) -> PlannerSignal:
+        """What it brings some of the characters."""
+        time_s = self.time_s[rows] if isinstance(self.time_s, np.ndarray) else self.time_s
+        return PlannerSignal(self.emotion[rows], self.words[rows], time_s, self.habit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,14 +80,15 @@ class Decisions:
 
 @dataclass(frozen=True, eq=False)
 class PlannerState:
-    """Where n characters stand; never changed in place, so an old state can be kept, saved or compared.
+    """Where n characters stand; never changed in place (but for who spends it), so that it can be kept or compared.
 
     key: (n,) uint64 of each character's draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running
     unit's duration, and until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf
     if it never ran; untried: (n, P) bool, True where that wait was drawn rather than earned. starts: (n, L) how
     often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P) as last computed; settled: (n, 7) the
     emotion that waits were last drawn for. words: (n, G) of the last tick. next_s: (n,) when the decision may
-    change by time alone, soonest_s the least of them. decisions: the last tick's.
+    change by time alone, soonest_s the least of them; calm: (n,) bool, no end of a word can change it. decisions:
+    the last tick's.
     """
 
     key: NDArray[np.uint64]
@@ -95,6 +102,7 @@ class PlannerState:
     phi_state: Floats
     words: Floats
     next_s: Floats
+    calm: Bools
     soonest_s: float
     decisions: Decisions
 
@@ -104,6 +112,21 @@ class PlannerState:
     def renewed(self, **changes: Any) -> PlannerState:
         """A state with some fields replaced (dataclasses.replace, without its overhead)."""
         return PlannerState(**{**vars(self), **changes})
+
+    def fresh(self) -> Bools:
+        """(n,) bool: before the first tick."""
+        return np.asarray((self.starts == 0).all(axis=1))
+
+    def copied(self) -> PlannerState:
+        """The same in arrays of its own."""
+        own = {name: value.copy() for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        decisions = Decisions(*(value.copy() for value in vars(self.decisions).values()))
+        return PlannerState(**own, soonest_s=self.soonest_s, decisions=decisions)
+
+    def standing(self) -> PlannerState:
+        """The tick in which nothing starts."""
+        old = self.decisions
+        return self.renewed(decisions=Decisions(old.unit, np.zeros_like(old.started), old.numbers))
 
     def of(self, rows: Ints) -> PlannerState:
         """Some of the characters, in the order of ``rows``; each goes on as it would have among all."""
@@ -115,8 +138,9 @@ class PlannerState:
 @dataclass(frozen=True, eq=False)
 class Factors:
     """Eq. 1 for R characters. continuity, time, state, score: (R, L, M); linkage: per layer (R, M), or None where
-    no layer is above. chosen: (R, L) slots. within: (R, L) the running unit is inside its duration. again: (R, L)
-    the running unit won after its waiting time. next_s: (R,) when the decision may change by time alone."""
+    no layer is above. chosen: (R, L) slots. within: (R, L) the running unit is inside its duration. started: (R, L)
+    another unit won, or the running one after its waiting time. next_s: (R,) when the decision may change by time
+    alone; calm: (R,) whether no end of a word can change it."""
 
     continuity: Floats
     time: Floats
@@ -125,8 +149,9 @@ class Factors:
     score: Floats
     chosen: Ints
     within: Bools
-    again: Bools
+    started: Bools
     next_s: Floats
+    calm: Bools
 
     def of(self, row: int) -> Factors:
         """The factors of one of the R characters."""

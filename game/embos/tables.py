@@ -35,7 +35,8 @@ class PlannerTables:
     (P, 3, 7) L_d, L_w and seconds from start to stroke. sigma: (P, 1) of the random factors' logarithm.
     constant_state: (P,) φ_state of rest slots, 0 elsewhere, −1 in empty ones. gesture_slots: (G,) consecutive
     slots of the gestures proper, gestures: the same as a slice. count: (L, 1) units that take part in the ranking;
-    not_real, place: (P,) for it. minimum: (P,) φ_time while waiting. least_s: (P,). settled: slots whose
+    not_real, place: (P,) for it. minimum: (P,) φ_time while waiting; reach: (L,) the share of a score that a unit's own
+    must have while it waits to come up to it afterwards. least_s: (P,). settled: slots whose
     units count as having run before. initial: (L,) slots.
     """
 
@@ -61,6 +62,7 @@ class PlannerTables:
     count: Floats
     least_s: Floats
     minimum: Floats
+    reach: Floats
     settled: Ints
     initial: Ints
     presence: float
@@ -183,6 +185,9 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         count=real.reshape(layers, width).sum(axis=1, keepdims=True).clip(1).astype(np.float64),
         least_s=np.where(real, least_s, 0.0),
         minimum=np.array([config.minimum[layer] for layer in config.layers]).repeat(width),
+        # A little less, so that rounding never hides a unit.
+        reach=np.array([min(config.minimum[layer] / max(config.steady, 1e-300), 1.0) for layer in config.layers])
+        * (1 - 1e-9),
         settled=np.flatnonzero(real & np.repeat([layer in config.settled for layer in config.layers], width)),
         initial=initial,
         presence=config.presence,

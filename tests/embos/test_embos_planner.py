@@ -297,7 +297,7 @@ def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> No
     for tick in range(600):
         signal = PlannerSignal(np.eye(7), words, tick * DT)
         now = planner.moment(signal.time_s, DT)
-        prepared = planner.prepared(state, signal)
+        prepared = planner.prepared(state, signal, rows)
         time = planner.evaluate(prepared, rows, words, now).time.reshape(7, -1)
         used = planner.tables.unit >= 0
         wanted = scores.phi_time(now, started, lengths, waits)
