@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import Mode
-from game.app.loading import load_planner
 from game.app.body_ahead import TICKS, Ahead, first_tick_after
+from game.app.loading import load_planner
 from game.app.performance import factors_of, played_span
 from game.app.step import PEAK_S, StepAssets, line_cues, reaction_to, targets_of, timed_line
 from game.app.talk import TalkAssets, TalkState
@@ -164,8 +164,7 @@ class _Bodies:
         rows, at = rows[at >= 0], at[at >= 0]
         if not rows.size:
             return
-        tick = self.tick[rows] + at
-        signal = PlannerSignal(*self.ahead.signal(rows, at), tick * TICK_S, self.habit)
+        signal = self.ahead.signal(rows, at, self.habit)
         # Why something begins is told from the state before it.
         before = self.state.of(rows) if self.observer.explain else None
         self.state = self.planner.judge(self.state, rows, signal, TICK_S, spend=True)
@@ -214,7 +213,7 @@ class _Bodies:
         """Lines begin or have been heard out."""
         if not rows.size:
             return
-        time_s = self.tick[rows] * TICK_S
+        time_s: Floats = np.asarray(self.tick[rows] * TICK_S, dtype=np.float64)
         emotion = self.ahead.leaked(rows, time_s)
         lead_s = self.planner.library.stroke_lead_s(emotion)
         for at, row in enumerate(rows.tolist()):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from game.app.step import FELT_HALF_LIFE_S, SHOWN_HALF_LIFE_S, leaked_emotion
 from game.app.world import TICK_S
 from game.core.springs import damper_fraction
-from game.embos import GestureCues, Planner, PlannerState
+from game.embos import GestureCues, Habit, Planner, PlannerSignal, PlannerState
 from game.emotion import Temperament
 
 __all__ = ["TICKS", "Ahead", "first_tick_after"]
@@ -126,7 +126,7 @@ class Ahead:
             step += feeling
             feeling = step
         self.feeling[rows] = course[length - 1, np.arange(len(rows))]
-        time_s = (tick[:, None] + np.arange(longest)) * TICK_S
+        time_s: Floats = np.asarray((tick[:, None] + np.arange(longest)) * TICK_S, dtype=np.float64)
         course = course.transpose(1, 0, 2)
         emotion = leaked_emotion(self.person, course[..., :6], course[..., 6:], time_s - self.burst_s[rows, None])
         self.emotion[rows, :longest], self.time_s[rows, :longest] = emotion, time_s
@@ -141,7 +141,7 @@ class Ahead:
         half_s = 0.5 * self.planner.config.word_window_s
         least_s, most_s = self._leads_s
         cue, cue_s = self.cue[rows], self.cue_s[rows]
-        some = np.isfinite(cue_s).any(axis=0).nonzero()[0]
+        some = np.flatnonzero(np.isfinite(cue_s).any(axis=0))
         if some.size:
             cue, cue_s = cue[:, : some[-1] + 1], cue_s[:, : some[-1] + 1]
             first, last = cue_s - most_s[cue] - half_s, cue_s - least_s[cue] + half_s
@@ -181,9 +181,10 @@ class Ahead:
         self.at[rows] = np.where(found, at + 1, self.length[rows])
         return rows, at
 
-    def signal(self, rows: Ints, at: Ints) -> tuple[Floats, Floats]:
-        """(R, 7) emotion and (R, G) word factors at places (R,) ahead."""
-        return self.emotion[rows, at], self.words[rows, at].astype(np.float64)
+    def signal(self, rows: Ints, at: Ints, habit: Habit | None) -> PlannerSignal:
+        """What the ticks at places (R,) ahead bring, to each at its own time."""
+        words = self.words[rows, at].astype(np.float64)
+        return PlannerSignal(self.emotion[rows, at], words, self.time_s[rows, at], habit)
 
     def pass_on(self, rows: Ints) -> Ints:
         """(R,) how many ticks those rows have gone through."""

@@ -22,7 +22,7 @@ from game.app.talk import Choice, TalkAssets, TalkState, choose
 from game.app.world import TEXT_SPEED, TICK_S, Body, Intent, Speech, World, next_mark
 from game.core.emotion_space import EMOTIONS, SIX, with_neutral
 from game.core.springs import damp
-from game.embos import GestureCues, Planner, PlannerSignal, habit_of
+from game.embos import GestureCues, Planner, PlannerSignal, beat_columns, habit_of
 from game.emotion import Temperament, shown_emotion
 from game.face import FaceAsset, FaceSignal, advance_face, start_face, viseme_track
 from game.story import Spoken, TimedText
@@ -52,6 +52,8 @@ NAMED_GESTURE_S = 0.4
 """When the stroke of a gesture that the script names falls, seconds into its line: on the first words."""
 PRESENT = 0.15
 """A gesture that less than this of the felt emotion knows does not hold a line up and competes with no beat."""
+KNOWN_LINES = 4096
+"""The same lines are spoken again and again; so many are remembered with their timing and cues."""
 HABIT_S, HABIT_SHARE = 5.0, 0.75
 """A greeting habit is seen for so long, and moves the body by this share: it is learnt before it can mislead."""
 CUSTOMER_GAZE = np.array([0.0, 1.16, 3.0])
@@ -159,8 +161,7 @@ def timed_line(line: Spoken, language: str, text_speed: str) -> TimedText:
     return _timed(line.text(language), language, CHARS_PER_S[language] * (1.0 if factor is None else factor))
 
 
-# The same lines are spoken again and again.
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=KNOWN_LINES)
 def _timed(text: str, language: str, chars_per_s: float | None) -> TimedText:
     return TimedText(text, language, chars_per_s)
 
@@ -174,19 +175,34 @@ def line_cues(
     lead_s: (G,) from start to stroke in that emotion.
     """
     shown = planner.library.known_gestures @ emotion > PRESENT
-    cues = _calls(planner, timed.text, timed.language, timed.chars_per_s, named, shown.tobytes())
+    line = (planner, timed.text, timed.language, timed.chars_per_s)
+    _, mattering = _called_up(*line)
+    cues = _cues(*line, named, (shown & mattering).tobytes())
     start_s = now_s + min(cues.preparation_s(lead_s, shown), planner.config.lead_in_s)
     return cues.later(start_s), start_s
 
 
-@lru_cache(maxsize=4096)
-def _calls(
+@lru_cache(maxsize=KNOWN_LINES)
+def _called_up(
+    planner: Planner, text: str, language: str, chars_per_s: float | None
+) -> tuple[GestureCues, NDArray[np.bool_]]:
+    """A line's cues without beats, and (G,) the gestures of which it matters whether they are shown."""
+    library, timed = planner.library, _timed(text, language, chars_per_s)
+    cues = GestureCues.from_words(library, text, timed.char_s, language)
+    mattering = np.zeros(cues.count, dtype=bool)
+    mattering[cues.gesture] = mattering[beat_columns(library, planner.config.stress)] = True
+    return cues, mattering
+
+
+@lru_cache(maxsize=KNOWN_LINES)
+def _cues(
     planner: Planner, text: str, language: str, chars_per_s: float | None, named: str | None, shown: bytes
 ) -> GestureCues:
     """A line's cues from its start on; shown: (G,) bool as bytes, gestures that the feeling knows."""
-    timed, known = _timed(text, language, chars_per_s), np.frombuffer(shown, dtype=bool)
-    library, stress = planner.library, planner.config.stress
-    cues = GestureCues.from_line(library, text, timed.char_s, language, shown=known, stress=stress)
+    library, timed = planner.library, _timed(text, language, chars_per_s)
+    words, _ = _called_up(planner, text, language, chars_per_s)
+    known = np.frombuffer(shown, dtype=bool)
+    cues = words.with_beats(library, text, timed.char_s, language, shown=known, stress=planner.config.stress)
     return cues if named is None else cues.adding(library, named, min(NAMED_GESTURE_S, timed.length_s))
 
 

@@ -2,7 +2,7 @@
 
 from game.embos.clips import ClipBank, KnownClips, TakeClip, load_clips, pack_clips
 from game.embos.config import PlannerConfig, load_config
-from game.embos.cues import GestureCues, timed_tokens
+from game.embos.cues import GestureCues, beat_columns, timed_tokens
 from game.embos.explain import Candidate
 from game.embos.habits import check_habit, greet, habit_of
 from game.embos.library import UnitLibrary
@@ -31,6 +31,7 @@ __all__ = [
     "TakeClip",
     "UnitLibrary",
     "Variant",
+    "beat_columns",
     "check_habit",
     "greet",
     "habit_of",

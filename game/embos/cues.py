@@ -15,7 +15,7 @@ from game.embos.library import UnitLibrary
 from game.embos.stress import StressRule, stressed_moments
 from game.embos.words import BY_SUBSTRING, WORD
 
-__all__ = ["GestureCues", "timed_tokens"]
+__all__ = ["GestureCues", "beat_columns", "timed_tokens"]
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +30,11 @@ def timed_tokens(text: str, start_s: float, length_s: float, language: str = "en
     if language in BY_SUBSTRING:
         return [(text[i:], start_s + length_s * i / letters) for i in range(len(text))]
     return [(m.group(), start_s + length_s * m.start() / letters) for m in WORD.finditer(text)]
+
+
+def beat_columns(library: UnitLibrary, stress: StressRule) -> list[int]:
+    """Columns of library.gestures that may stress any word."""
+    return [column for column, unit in enumerate(library.gestures) if library.units[unit].name in stress.units]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,17 +83,35 @@ class GestureCues:
         char_s: seconds of each character, on any clock; shown: (G,) gestures the present feeling knows, the others
         compete with no beat.
         """
-        own = cls.from_tokens(library, _tokens(text, char_s, language), language)
-        taken_s = own.time_s[shown[own.gesture]].tolist() if own.gesture.size else []
-        names = [library.units[unit].name for unit in library.gestures]
-        beats = [column for column, name in enumerate(names) if name in stress.units and shown[column]]
+        return cls.from_words(library, text, char_s, language).with_beats(
+            library, text, char_s, language, shown=shown, stress=stress
+        )
+
+    @classmethod
+    def from_words(cls, library: UnitLibrary, text: str, char_s: Sequence[float], language: str) -> GestureCues:
+        """Cues of a line with its timing, without beats."""
+        return cls.from_tokens(library, _tokens(text, char_s, language), language)
+
+    def with_beats(
+        self,
+        library: UnitLibrary,
+        text: str,
+        char_s: Sequence[float],
+        language: str,
+        *,
+        shown: NDArray[np.bool_],
+        stress: StressRule,
+    ) -> GestureCues:
+        """With beats on stressed words between these; see ``from_line``."""
+        taken_s = self.time_s[shown[self.gesture]].tolist() if self.gesture.size else []
+        beats = [column for column in beat_columns(library, stress) if shown[column]]
         moments = stressed_moments(text, char_s, language, stress, taken_s) if beats else []
-        pairs = {*zip(own.time_s.tolist(), own.gesture.tolist(), strict=True)}
+        pairs = {*zip(self.time_s.tolist(), self.gesture.tolist(), strict=True)}
         found = sorted(pairs | {(moment, column) for moment in moments for column in beats})
-        return cls(
+        return GestureCues(
             np.array([column for _, column in found], dtype=np.intp),
             np.array([time_s for time_s, _ in found], dtype=np.float64),
-            own.count,
+            self.count,
         )
 
     @classmethod
