@@ -70,7 +70,8 @@ def autoplay(inkjs: Path | None = None) -> list[Row]:
     """
     from game.app import bench_talk
     from game.app.autoplay import play_with_bodies
-    from game.app.body import BATCH, BodyObserver
+    from game.app.autoplay.jobs import BODIES_PER_JOB
+    from game.app.body import BodyObserver
     from game.app.content import load_talk_assets, stall_path
     from game.app.policies import seat
 
@@ -80,8 +81,8 @@ def autoplay(inkjs: Path | None = None) -> list[Row]:
     def with_bodies(observer: BodyObserver, policy: str) -> float:
         start = time.perf_counter()
         player = seat(assets, policy, library=observer.planner.library)
-        play_with_bodies(observer, [player] * BATCH, 1, 0)
-        return BATCH / (time.perf_counter() - start)
+        play_with_bodies(observer, [player] * BODIES_PER_JOB, 1, 0)
+        return BODIES_PER_JOB / (time.perf_counter() - start)
 
     observer = BodyObserver.load(explain=False)
     for policy in ("random", "reader"):

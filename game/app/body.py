@@ -25,15 +25,13 @@ from game.embos import Planner, PlannerSignal, PlannerState, greet, habit_of
 from game.embos.draws import character_keys
 from game.story import Spoken
 
-__all__ = ["BATCH", "BodyObserver", "Watched"]
+__all__ = ["BodyObserver", "Watched"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 NextBeat = Callable[[int, list["Watched"]], TalkState | None]
 
-BATCH = 512
-"""Talks whose bodies run side by side."""
 THINKING_TICKS = 61
 """How long the simulated player looks before deciding: 2 s and the tick in which the last word ended."""
 PATIENCE_S = 0.4

@@ -17,7 +17,7 @@ __all__ = ["CHUNK", "PlannerTables", "build_tables"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
-CHUNK = 64
+CHUNK = 256
 """Characters computed together: enough to hide the calls, few enough for the cache."""
 
 _PLACE_BITS = 10

@@ -34,7 +34,7 @@ from game.story import shipped_stalls
 __all__ = ["BODIES_PER_JOB", "TALKS_PER_JOB", "Job", "Result", "needs_bodies", "work"]
 
 TALKS_PER_JOB = 100
-BODIES_PER_JOB = 256
+BODIES_PER_JOB = 512
 """Bodies are cheapest side by side."""
 
 

@@ -69,7 +69,7 @@ class Plan:
             "mode": self.mode,
             "log": self.log,
             "cover": self.cover,
-            "per_job": self.per_job,
+            "per_job": [self.per_job, TALKS_PER_JOB, BODIES_PER_JOB],
             "visits": self.visits,
             "contents": content_hash(self.stalls),
         }

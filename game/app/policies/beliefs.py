@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import ne
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from game.app.talk import TalkAssets
 from game.core.emotion_space import EMOTIONS
 from game.embos import UnitLibrary
 from game.emotion import Feeling, after_insult, after_line, after_refusal, pass_round, shown_values
+from game.face import REGIONS
 
 __all__ = ["Acquaintance", "Belief", "BodyReading", "FaceReading"]
 
@@ -30,6 +32,9 @@ _SAMPLES = 160
 _LEAST = 0.004
 """Below this no belief falls: a script's own lines move feelings in ways that no rule tells."""
 _STRENGTHS = (0.25, 0.4, 0.55, 0.7)
+_OTHER_PART = 0.35
+_DIFFERING = tuple(_OTHER_PART**count for count in range(len(REGIONS) + 1))
+"""How well a face fits of which so many parts are others."""
 
 
 class Acquaintance:
@@ -40,11 +45,20 @@ class Acquaintance:
         self.once_right = assets.feelings.once_right
         self.prior: Floats = np.asarray(assets.person.mood_prior, dtype=np.float64)
         self.quality: Mapping[str, tuple[str, ...]] = assets.person.quality
+        self._labels: dict[tuple[str, str], tuple[int, ...]] = {}
 
     def taken(self, act: str, label: int) -> str:
         """How an act is taken by who feels a label (0..6)."""
         row = self.quality.get(act)
         return "neutral" if row is None else row[label]
+
+    def labels(self, act: str, quality: str) -> tuple[int, ...]:
+        """The labels (0..6) by which an act is taken so."""
+        found = self._labels.get((act, quality))
+        if found is None:
+            found = tuple(label for label in range(7) if self.taken(act, label) == quality)
+            self._labels[act, quality] = found
+        return found
 
     def feeling(self, label: int, strength: float) -> Feeling:
         """Somebody of this temperament who feels a label so strongly."""
@@ -109,7 +123,10 @@ class Belief:
 
     def chance(self, act: str, quality: str) -> float:
         """How likely an act is taken so."""
-        return float(sum(self.now[label] for label in range(7) if self.known.taken(act, label) == quality))
+        total, now = 0.0, self.now.tolist()
+        for label in self.known.labels(act, quality):
+            total += now[label]
+        return total
 
 
 @dataclass(frozen=True)
@@ -122,7 +139,6 @@ class FaceReading:
     exemplars: tuple[tuple[tuple[Drawn, ...], ...], ...]
 
     SPREAD = 0.13
-    OTHER_PART = 0.35
 
     @staticmethod
     def of(known: Acquaintance, eye: FaceEye, *, masked: bool) -> FaceReading:
@@ -149,12 +165,11 @@ class FaceReading:
 
     def _fit(self, drawn: Drawn, exemplars: Sequence[Drawn]) -> float:
         parts, valence, arousal = drawn
-        fits = []
+        spread, total = 2.0 * self.SPREAD**2, 0.0
         for own, v, a in exemplars:
-            away = ((valence - v) ** 2 + (arousal - a) ** 2) / (2.0 * self.SPREAD**2)
-            differ = sum(mine != other for mine, other in zip(parts, own, strict=True))
-            fits.append(math.exp(-away) * self.OTHER_PART**differ)
-        return math.log(sum(fits) / len(fits) + 1e-4)
+            away = ((valence - v) ** 2 + (arousal - a) ** 2) / spread
+            total += math.exp(-away) * _DIFFERING[sum(map(ne, parts, own))]
+        return math.log(total / len(exemplars) + 1e-4)
 
 
 class BodyReading:
