@@ -33,6 +33,7 @@ from game.render.model import (
 )
 from game.render.mood import MARKET_MOOD, Mood
 from game.render.moving import Motion, hanging_bulbs, moving_meshes, read_motion
+from game.render.strands import strand_terms
 from game.render.weave import MOTIFS
 
 _MAX_BYTES, _MAX_PIXELS = 256_000_000, 128_000_000  # of a picture; 16 frames of 3840×2160 in a strip
@@ -193,7 +194,7 @@ def _part(file: GltfFile, primitive: GltfPrimitive, group: str) -> Part:
     if material.kind == "face" and {"TEXCOORD_0", "_FACE"} <= attributes.keys():
         extra = np.hstack([_floats(attributes["TEXCOORD_0"]), _floats(attributes["_FACE"])])
     elif material.kind == "hair" and "_HAIR" in attributes:
-        extra[:, :2] = attributes["_HAIR"]
+        extra[:, :2] = strand_terms(position, primitive.indices.reshape(-1, 3), attributes["_HAIR"])
     weave = _weave(file, primitive)
     if weave is not None and "TEXCOORD_0" in attributes:
         extra[:, :2], extra[:, 2:] = attributes["TEXCOORD_0"], weave

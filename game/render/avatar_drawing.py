@@ -60,7 +60,8 @@ class AvatarDrawing(Owner):
 
     def _make_skinning(self, device: Device) -> None:
         geometry = self._model.geometry
-        program = self.own(device.program("skin.vert.glsl", varyings=["clip", "terms", "shadow_place", "line"]))
+        varyings = ["clip", "terms", "shadow_place", "line"]
+        program = self.own(device.program("skin.vert.glsl", varyings=varyings, defines={"CAST_SIZE": 0}))
         self._bones = self._buffer(np.hstack([geometry.joint, geometry.weight]))
         entries = [
             layout(program, self._place, position="3f", normal="3f", outline="1f"),
@@ -147,9 +148,13 @@ class AvatarDrawing(Owner):
         skin_matrices: NDArray[np.float32],
         world_to_clip: NDArray[np.float64],
         size: tuple[int, int],
+        *,
         whole: bool = True,
+        cast: bool = True,
     ) -> tuple[int, int, int, int]:
-        """Skin the mesh; skin_matrices (k, 4, 4). ``whole`` is for people with legs apart: an avatar always is whole.
+        """Draw the shadow map, if ``cast``, and skin the mesh; skin_matrices (k, 4, 4).
+
+        ``whole`` is for people with legs apart: an avatar always is whole.
 
         Returns the picture box (x, y, width, height) that encloses the mesh.
         """
@@ -157,6 +162,8 @@ class AvatarDrawing(Owner):
         rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
         self._joints.write(rows)
         self._joints.bind_to_uniform_block(1)
+        if cast:
+            self._cast()
         self._nowhere.use()
         self._skinning.transform(self._captured, moderngl.POINTS, vertices=len(self._rest))
         corners = self._model.joint_box
@@ -170,7 +177,7 @@ class AvatarDrawing(Owner):
         high = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + margin, 0, size)
         return (int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
 
-    def cast(self) -> None:
+    def _cast(self) -> None:
         """Draw the shadow map: back faces, and both sides of what has no back."""
         context = self._context
         self._shadow_target.use()

@@ -27,7 +27,7 @@ class CharacterDrawing(Owner):
 
     lamps: the first of a vertex's extras is how much it glows when the lamps are on.
 
-    Per frame: ``pose`` (joint matrices), ``cast`` (shadow map), ``draw`` (colour), ``draw_over`` (brows over the hair).
+    Per frame: ``pose`` (joint matrices, shadow map), ``draw`` (colour), ``draw_over`` (brows over the hair).
     The Frame block must be bound; the face texture is given to the draw calls.
     """
 
@@ -49,7 +49,7 @@ class CharacterDrawing(Owner):
             else None
         )
         self._whole = True
-        self._make_skinning(device, mesh)
+        self._make_skinning(device, mesh, level if model.shadow is not None else None)
         self._make_drawing(device, mesh, level, lamps)
         self._make_surfaces(device, model, level)
         self._make_outline(device, mesh)
@@ -61,9 +61,16 @@ class CharacterDrawing(Owner):
     def _buffer(self, array: NDArray[np.generic]) -> moderngl.Buffer:
         return self.own(self._context.buffer(np.ascontiguousarray(array)))
 
-    def _make_skinning(self, device: Device, mesh: CharacterMesh) -> None:
+    def _make_skinning(self, device: Device, mesh: CharacterMesh, level: Level | None) -> None:
         count = len(mesh.position)
-        program = self.own(device.program("skin.vert.glsl", varyings=["clip", "terms", "shadow_place", "line"]))
+        program = self.own(
+            device.program(
+                "skin.vert.glsl",
+                varyings=["clip", "terms", "sun", "line"],
+                defines={"CAST_SIZE": 0 if level is None else level.shadow_size},
+            )
+        )
+        set_uniforms(program, shadow_map=1)
         place = self._buffer(np.hstack([mesh.position, mesh.normal, mesh.outline[:, None]]).astype(np.float32))
         bones = self._buffer(np.hstack([mesh.joint, mesh.weight]))
         self._skinning = self.own(
@@ -75,10 +82,10 @@ class CharacterDrawing(Owner):
                 ],
             )
         )
-        self._captured = [self.own(device.context.buffer(reserve=count * 16)) for _ in range(4)]
+        self._captured = [self.own(device.context.buffer(reserve=count * size)) for size in (16, 16, 8, 16)]
 
     def _make_drawing(self, device: Device, mesh: CharacterMesh, level: Level, lamps: bool) -> None:
-        clip, terms, place, _ = self._captured
+        clip, terms, sun, _ = self._captured
         self._palette = self._buffer(mesh.palette)
         self._extra = self._buffer(mesh.extra)
         self._index = self.own(device.context.buffer(np.ascontiguousarray(mesh.triangle), dynamic=True))
@@ -92,10 +99,10 @@ class CharacterDrawing(Owner):
                 device.program(
                     "character.vert.glsl",
                     "character.frag.glsl",
-                    defines={**flags, "TAPS": level.shadow_taps, "SHADOW_SIZE": level.shadow_size},
+                    defines=flags,
                 )
             )
-            set_uniforms(program, shadow_map=1, face_texture=2, weaves=7, planes=8)
+            set_uniforms(program, face_texture=2, weaves=7, planes=8)
             if run.kind == "face":
                 self._faces.append(program)
             array = self.own(
@@ -104,7 +111,7 @@ class CharacterDrawing(Owner):
                     [
                         layout(program, clip, clip="4f"),
                         layout(program, terms, terms="4f"),
-                        layout(program, place, shadow_place="4f"),
+                        layout(program, sun, sun="2f"),
                         layout(program, self._palette, lit="3f1", shade="3f1", deep="3f1", _="3x"),
                         layout(program, self._extra, extra="4f"),
                     ],
@@ -122,8 +129,10 @@ class CharacterDrawing(Owner):
             planes = face_planes(DEFAULT_STYLE) if model.planes is None else model.planes
             self._planes = self.own(device.context.texture(planes.shape[::-1], 1, planes.tobytes(), alignment=1))
             self._planes.repeat_x = self._planes.repeat_y = False
-        if level.weaves and any(run.kind == "woven" for run in self._mesh.runs):
-            tiles = weave_tiles()
+        woven = [run for run in self._mesh.runs if run.kind == "woven"]
+        if level.weaves and woven:
+            corners = [self._mesh.triangle.reshape(-1)[r.first : r.first + r.count] for r in woven]
+            tiles = weave_tiles(set(np.unique(self._mesh.extra[np.concatenate(corners), 2]).astype(int).tolist()))
             self._weaves = self.own(
                 device.context.texture_array((*tiles.shape[:0:-1], len(tiles)), 1, tiles.tobytes(), alignment=1)
             )
@@ -194,9 +203,11 @@ class CharacterDrawing(Owner):
         skin_matrices: NDArray[np.float32],
         world_to_clip: NDArray[np.float64],
         size: tuple[int, int],
+        *,
         whole: bool = True,
+        cast: bool = True,
     ) -> tuple[int, int, int, int]:
-        """Skin the mesh, without its legs unless ``whole``; skin_matrices (j, 4, 4).
+        """Draw the shadow map, if ``cast``, and skin the mesh; without legs unless ``whole``. skin_matrices (j, 4, 4).
 
         Returns the picture box (x, y, width, height) that encloses the mesh.
         """
@@ -206,6 +217,10 @@ class CharacterDrawing(Owner):
         self._joints.bind_to_uniform_block(1)
         for program in self._faces:
             set_uniforms(program, head_left=skin_matrices[self._head, :3, 0])
+        if self.shadow_map is not None:
+            if cast:
+                self._cast()
+            self.shadow_map.use(1)
         self._nowhere.use()
         count = len(self._mesh.position) if whole else self._mesh.above.vertices
         self._skinning.transform(self._captured, moderngl.POINTS, vertices=count)
@@ -225,7 +240,7 @@ class CharacterDrawing(Owner):
         high = np.clip(np.ceil(pixels.max(axis=0)).astype(int) + _MARGIN_PX, 0, size)
         return (int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
 
-    def cast(self) -> None:
+    def _cast(self) -> None:
         """Draw the shadow map: back faces only, so that the coarse mesh does not speckle the fine one."""
         context = self._context
         self._shadow_target.use()
@@ -241,8 +256,6 @@ class CharacterDrawing(Owner):
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         context.depth_func = "<"
-        if self.shadow_map is not None:
-            self.shadow_map.use(1)
         if face is not None:
             face.use(2)
         if self._planes is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,13 +52,13 @@ def coarser(part: Part, cell_m: float) -> Part:
     )
 
 
-def loose_pieces(part: Part) -> NDArray[np.intp]:
-    """(v,) number of the piece each vertex belongs to; pieces share no triangle."""
-    label = np.arange(len(part.position))
+def loose_pieces(triangle: NDArray[np.integer[Any]]) -> NDArray[np.intp]:
+    """(v,) number of the piece each vertex belongs to, v the largest corner plus one; pieces share no triangle."""
+    label = np.arange(int(triangle.max()) + 1)
     while True:
-        lowest = label[part.triangle].min(axis=1)
+        lowest = label[triangle].min(axis=1)
         new = label.copy()
-        np.minimum.at(new, part.triangle.ravel(), np.repeat(lowest, 3))
+        np.minimum.at(new, triangle.ravel(), np.repeat(lowest, 3))
         new = new[new]
         if np.array_equal(new, label):
             return np.unique(label, return_inverse=True)[1].ravel()

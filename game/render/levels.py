@@ -16,10 +16,10 @@ class Level:
     """What one quality level spends. Triangles are lowered before resolution: it looks better."""
 
     name: str
-    samples: int  # of the moving picture; the baked one has always four
+    samples: int  # of the person; the baked scene has always four
     triangles: int
     shadow_size: int
-    shadow_taps: int
+    shadow_taps: int  # on the table; on the person every vertex looks eight times
     shadow_every: int  # frames between two shadow maps
     face_size: int
     people: int  # passers-by
@@ -31,9 +31,9 @@ class Level:
 LEVELS: tuple[Level, ...] = (
     Level("low", 0, 15_000, 512, 1, 2, 512, 0, False, weaves=False),
     Level("medium", 0, 25_000, 512, 1, 2, 512, 3, False),
-    Level("default", 0, 40_000, 768, 2, 2, 512, 4, False),
-    Level("high", 4, 25_000, 768, 1, 2, 512, 6, True),
-    Level("ultra", 4, 40_000, 768, 2, 1, 1024, 8, True),
+    Level("default", 0, 40_000, 512, 2, 2, 512, 4, False),
+    Level("high", 4, 25_000, 512, 1, 2, 512, 6, True),
+    Level("ultra", 4, 40_000, 768, 2, 2, 1024, 8, True),
 )
 DEFAULT = LEVELS[2]
 

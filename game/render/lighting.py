@@ -66,7 +66,9 @@ TABLE_LIGHT = LightBox((0.03, 0.93, 0.08), 0.62, 0.62, 2.9, 5.1, 0.0012)  # the 
 STUDIO_LIGHT = LightBox((0.0, 0.70, 0.0), 0.95, 0.95, 2.6, 6.2, 0.0010)  # the whole person
 
 
-_ROWS = 18
+_WARM_GLOW, _COOL_GLOW = (0.16, 0.13, 0.09), (0.022, 0.0385, 0.0715)
+"""What the back lights add at the edges of even the darkest colour."""
+_ROWS = 22
 
 
 class FrameBlock(Owner):
@@ -110,7 +112,10 @@ class FrameBlock(Owner):
         rows[12] = (width, height, line_px * scale, self.FEATHER_PX * max(1.0, scale**0.5))
         rows[13] = (projection[2, 3], -projection[2, 2], box.bias, self.HEAD_PUSH_M)
         day = lights.day
-        rows[14:18, :3] = day.lit, day.shade, day.deep, day.rim
+        rows[14:17, :3] = day.lit, day.shade, day.deep
+        rows[17:19, :3] = 0.55 * day.rim, np.array(_WARM_GLOW) * day.rim
+        rows[19:21, :3] = 0.165 * day.shade, np.array(_COOL_GLOW) * day.shade
+        rows[21, :3] = day.rim
         rows[14, 3] = day.lamps
         self._buffer.write(rows)
         self._world_to_clip = world_to_clip

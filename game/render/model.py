@@ -73,7 +73,8 @@ class Part:
     triangle: NDArray[np.uint32]  # (t, 3), counter-clockwise in front
     joint: NDArray[np.uint8] | None = None  # (v, 4)
     weight: NDArray[np.uint8] | None = None  # (v, 4), each row sums to 255
-    # (v, 4): face: uv, texture share, shadow fade; hair: azimuth, height term, 0, 0; woven: tiles, motif, strength
+    # (v, 4): face: uv, texture share, shadow fade; hair: its strand's tone, height term, 0, 0;
+    # woven: tiles along and across, motif, strength
     extra: Floats | None = None
 
 
@@ -221,6 +222,16 @@ def _palette(parts: Sequence[Part], graded: bool) -> NDArray[np.uint8]:
     return np.repeat(np.stack(rows), [len(p.position) for p in parts], axis=0)
 
 
+def _toned(palette: NDArray[np.uint8], parts: Sequence[Part]) -> NDArray[np.uint8]:
+    """The palette (v, 12) with every strand of hair in its own tone."""
+    tones = [
+        p.extra[:, 0] if p.material.kind == "hair" and p.extra is not None else np.zeros(len(p.position), np.float32)
+        for p in parts
+    ]
+    share = 1.0 + np.concatenate(tones).astype(np.float32)
+    return np.asarray(np.clip(np.rint(palette * share[:, None]), 0, 255), dtype=np.uint8)
+
+
 def merge_character(parts: Sequence[Part], joint_count: int, leg_joints: Sequence[int] = ()) -> CharacterMesh:
     """Join skinned parts. Raises BadInput for unknown classes, missing skinning or too many joints."""
     if not 1 <= joint_count <= MAX_JOINTS:
@@ -259,7 +270,7 @@ def merge_character(parts: Sequence[Part], joint_count: int, leg_joints: Sequenc
         outline,
         joint,
         weight,
-        _palette(parts, graded=True)[order],
+        _toned(_palette(parts, graded=True), parts)[order],
         extra[order],
         triangle,
         runs,

@@ -101,7 +101,7 @@ def hanging_bulbs(part: Part) -> tuple[Part, Motion, Floats] | None:
     """A still part that is really a string of bulbs: the part, how they sway, and a pivot (v, 3) at the top of each."""
     if part.material.name != _BULB or part.material.kind != "flat":
         return None
-    piece = loose_pieces(part)
+    piece = loose_pieces(part.triangle)
     top = np.full(piece.max() + 1, -np.inf)
     np.maximum.at(top, piece, part.position[:, 1])
     count = np.bincount(piece)

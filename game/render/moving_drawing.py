@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import moderngl
 import numpy as np
@@ -26,9 +25,8 @@ class MovingDrawing(Owner):
     def __init__(self, device: Device, meshes: Sequence[MovingMesh], level: Level) -> None:
         super().__init__()
         self._context = device.context
-        plain = replace(level, shadow_taps=0)
         self._things = [
-            (moving, self.own(CharacterDrawing(device, _model(moving), plain, lamps=True))) for moving in meshes
+            (moving, self.own(CharacterDrawing(device, _model(moving), level, lamps=True))) for moving in meshes
         ]
         self._program = self.own(device.program("glow.vert.glsl", "glow.frag.glsl"))
         set_uniforms(self._program, reach=_REACH)

@@ -30,7 +30,7 @@ from game.render.moving_drawing import MovingDrawing
 from game.render.output import Output
 from game.render.scene_drawing import BakeKey, SceneDrawing, backdrop_place
 from game.render.sky import Sky
-from game.render.targets import Box, FrameTargets, union
+from game.render.targets import Box, FrameTargets
 from game.render.text import FontSet
 from game.render.view import FrameView
 
@@ -50,7 +50,6 @@ class _Canvas:
     is_draft: bool = False
     seen: BakeKey | None = None  # of the last frame
     turning: bool = False  # the camera moved between the last two frames
-    last_box: Box = (0, 0, 0, 0)  # where the person was
     item: tuple[object, ...] = ()  # what is baked in the place of the stall
 
 
@@ -215,24 +214,20 @@ class Renderer(Owner):
         day_share = stepped(view.day_share) if view.show_stall else DESIGN_SHARE
         key = BakeKey(view.camera, targets.size, view.show_stall, view.hidden_items, day_share, view.near)
         self._light_up(day_share)
-        changed = canvas.last_box
         with self.times.measured("bake"):
-            if self._bake(key, canvas):
-                changed = (0, 0, *targets.size)
+            self._bake(key, canvas)
         box = self._prepare(view, targets)
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory. All that is
         # drawn elsewhere was drawn before it: going back to a picture begun costs it the whole picture once more.
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
-        if view.show_stall and self._draw_life(view, targets):
-            changed = (0, 0, *targets.size)
+        if view.show_stall:
+            self._draw_life(view, targets)
         if box is not None and self._character is not None and self._painter is not None:
             with self.times.measured("person"):
-                self._draw_character(view, self._character, self._painter, targets)
-            canvas.last_box = box
-            changed = union(changed, box) if changed[2] else box
+                self._draw_character(view, self._character, self._painter, targets, box)
         self._frames += 1
-        return self._show(view, targets, changed, window)
+        return self._show(view, targets, window)
 
     def _draw_item(
         self, item: ItemView, view: FrameView, canvas: _Canvas, window: moderngl.Framebuffer | None
@@ -249,28 +244,27 @@ class Renderer(Owner):
         if canvas.item not in {wanted, (*wanted[:2], False)}:
             self._item.draw(item, targets.size, targets.bake, self.level.line_px, self._lights, draft=draft)
             canvas.item = wanted
-        canvas.baked, canvas.last_box, self._item_seen = None, (0, 0, 0, 0), item
+        canvas.baked, self._item_seen = None, item
         targets.work.use()
         self.device.context.copy_framebuffer(targets.work, targets.bake.still)
         self._frames += 1
-        return self._show(view, targets, (0, 0, *targets.size), window)
+        return self._show(view, targets, window)
 
     def _light_up(self, day_share: float) -> None:
         if self._lights.day.share != day_share:
             self._lights = Lights.market(day_share, self._mood)
             self._light = None
 
-    def _bake(self, key: BakeKey, canvas: _Canvas) -> bool:
-        """See that the baked picture fits; True if it was drawn."""
+    def _bake(self, key: BakeKey, canvas: _Canvas) -> None:
+        """See that the baked picture fits."""
         turned = canvas.seen is not None and key.camera != canvas.seen.camera
         # The very first picture is a draft too: it is there sooner, and the next one is whole.
         draft = self.drafts and (self._frames == 0 or (turned and canvas.turning))
         canvas.turning, canvas.seen = turned, key
         if key == canvas.baked and (draft or not canvas.is_draft):
-            return False
+            return
         self._scene.bake(key, canvas.targets.bake, self.level.line_px, self._lights, draft=draft)
         canvas.baked, canvas.is_draft = key, draft
-        return True
 
     def _prepare(self, view: FrameView, targets: FrameTargets) -> Box | None:
         """Everything that is drawn or skinned aside: passers-by, face, meshes, the shadow map.
@@ -294,31 +288,25 @@ class Renderer(Owner):
                 return None
             if isinstance(character, AvatarDrawing) and view.look is not None:
                 character.look(view.look)
-            box = character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall)
-            if self._frames % self.level.shadow_every == 0 or self._light is not light:
-                character.cast()
-                self._light = light
-        return _with_shadow(box, targets.size)
+            cast = self._frames % self.level.shadow_every == 0 or self._light is not light
+            self._light = light
+            return character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall, cast=cast)
 
     def _crowd_shown(self, view: FrameView) -> bool:
         return self._crowd is not None and view.crowd is not None and view.show_stall and self.level.people > 0
 
-    def _draw_life(self, view: FrameView, targets: FrameTargets) -> bool:
-        """Clouds, passers-by and what sways; True if there is any of it."""
-        sky = self._sky
+    def _draw_life(self, view: FrameView, targets: FrameTargets) -> None:
+        """Clouds, passers-by and what sways."""
         crowd = self._crowd if self._crowd_shown(view) else None
-        if sky is None and crowd is None and self._moving is None:
-            return False
         with self.times.measured("life"):
-            if sky is not None:
+            if self._sky is not None:
                 place = backdrop_place(view.camera, targets.size[0] / targets.size[1])
-                sky.draw(targets.work, place, view.time_s, self._lights.day)
+                self._sky.draw(targets.work, place, view.time_s, self._lights.day)
             if crowd is not None:
                 crowd.lay(targets.work)
             if self._moving is not None:
                 self._moving.draw(targets.work)
                 self._moving.draw_halos(targets.work, self._lights.day.lamps)
-        return True
 
     def _paint_face(self, view: FrameView, painter: FacePainter, size: tuple[int, int]) -> None:
         tan_half = view.camera.tan_half_height(size[0] / size[1])
@@ -331,12 +319,22 @@ class Renderer(Owner):
             painter.paint(self._face)
 
     def _draw_character(
-        self, view: FrameView, character: _Drawing, painter: FacePainter, targets: FrameTargets
+        self, view: FrameView, character: _Drawing, painter: FacePainter, targets: FrameTargets, box: Box
     ) -> None:
         targets.work.use()
-        character.draw(painter.under)
+        if targets.person is None or targets.bake.behind is None:
+            character.draw(painter.under)
+            self._draw_shadow_on_table(view, character, targets)
+            character.draw_over(painter.over)
+            return
+        # Samples are for the person alone, whose edges move: the scene behind was drawn with samples when it was baked,
+        # and all else has soft edges of its own. That spares a whole picture of samples every frame.
         self._draw_shadow_on_table(view, character, targets)
+        targets.person.use()
+        self.device.context.copy_framebuffer(targets.person, targets.bake.behind)
+        character.draw(painter.under)
         character.draw_over(painter.over)
+        self._output.lay(targets, box)
 
     def _draw_shadow_on_table(self, view: FrameView, character: _Drawing, targets: FrameTargets) -> None:
         context = self.device.context
@@ -351,11 +349,10 @@ class Renderer(Owner):
         targets.work.depth_mask = True
 
     def _show(
-        self, view: FrameView, targets: FrameTargets, changed: Box, window: moderngl.Framebuffer | None
+        self, view: FrameView, targets: FrameTargets, window: moderngl.Framebuffer | None
     ) -> moderngl.Framebuffer:
         with self.times.measured("output"):
-            over = view.hud is not None or view.show_stall
-            picture = self._output.finish(targets, changed, window, over=over)
+            picture = self._output.finish(targets, window)
             picture.use()
             if view.show_stall and view.item is None:
                 self._motes.draw(view.time_s, targets.full[0] / targets.full[1])
@@ -371,11 +368,3 @@ def _pixels(source: moderngl.Framebuffer, size: tuple[int, int]) -> NDArray[np.u
     width, height = size
     data = source.read(viewport=(0, 0, width, height), components=4)  # RGBA reads faster than RGB
     return np.ascontiguousarray(np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1, :, :3])
-
-
-def _with_shadow(box: Box, size: tuple[int, int]) -> Box:
-    """The box grown to the right and below by where the character's shadow falls on the table."""
-    x, y, width, height = box
-    grow_x, grow_y = size[0] // 40, size[1] // 24
-    low, right = max(0, y - grow_y), min(size[0], x + width + grow_x)
-    return (x, low, right - x, y + height - low)

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 from game.core.errors import GameError
@@ -72,14 +73,14 @@ def _append(
     came_from: str | None,
 ) -> None:
     seen.add(name)
-    path = folder / name
-    if not path.is_file():
+    text = _read(folder / name)
+    if text is None:
         raise ShaderError(f"{came_from or name}: no shader file {name} in {folder.name}/")
     number = len(source.files)
     source.files.append(name)
     lines.append(f"#line {number * _FILE_STEP + 1}")
-    for row, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
-        include, needs = _INCLUDE.match(line), _NEEDS.match(line)
+    for row, line in enumerate(text.splitlines(), start=1):
+        include, needs = (_INCLUDE.match(line), _NEEDS.match(line)) if "#" in line else (None, None)
         if include:
             if include[1] not in seen:
                 _append(include[1], defines, lines, source, folder, seen, came_from=f"{name}:{row}")
@@ -94,6 +95,12 @@ def _append(
             lines.append(f"#line {number * _FILE_STEP + row + 1}")
         else:
             lines.append(line)
+
+
+@lru_cache(maxsize=256)
+def _read(path: Path) -> str | None:
+    """A file's text, None where there is none; the same few files are included by every program."""
+    return path.read_text(encoding="utf-8") if path.is_file() else None
 
 
 def explain_log(log: str, files: list[str]) -> str:

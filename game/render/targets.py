@@ -6,25 +6,10 @@ import moderngl
 
 from game.render.device import Device, Owner
 
-__all__ = ["BakeTargets", "Box", "FrameTargets", "Picture", "copy_box", "union"]
+__all__ = ["BakeTargets", "Box", "FrameTargets", "Picture"]
 
 Box = tuple[int, int, int, int]  # x, y (from below), width, height in pixels
 BAKE_SAMPLES = 4
-
-
-def union(a: Box, b: Box) -> Box:
-    """The smallest box around both."""
-    x, y = min(a[0], b[0]), min(a[1], b[1])
-    return (x, y, max(a[0] + a[2], b[0] + b[2]) - x, max(a[1] + a[3], b[1] + b[3]) - y)
-
-
-def copy_box(context: moderngl.Context, target: moderngl.Framebuffer, source: moderngl.Framebuffer, box: Box) -> None:
-    """Copy colour and depth (as far as both have it) inside the box; resolves samples. ``target`` stays bound."""
-    target.scissor = box
-    target.use()
-    context.copy_framebuffer(target, source)
-    target.scissor = None  # type: ignore[assignment]  # moderngl takes None; its stub forgets
-    target.use()
 
 
 def _target(owner: Owner, device: Device, size: tuple[int, int], samples: int) -> moderngl.Framebuffer:
@@ -47,10 +32,10 @@ class Picture(Owner):
 
 
 class BakeTargets(Owner):
-    """What baking needs and leaves behind; ``still`` has as many samples as the moving picture.
+    """What baking needs and leaves behind.
 
-    raw: ungraded scene with samples of its own; raw_draft: with as few as may be; still: graded colour and depth;
-    dark: graded, in full shadow.
+    raw: ungraded scene with samples; raw_draft: with as few as may be; still: graded colour and depth, no samples;
+    dark: graded, in full shadow; behind: no colour, the scene's depth with samples, None where the person has none.
     """
 
     def __init__(self, device: Device, size: tuple[int, int], samples: int) -> None:
@@ -58,18 +43,26 @@ class BakeTargets(Owner):
         self._context = device.context
         # Samples can only be copied to a picture of as many samples, or of none.
         self.raw = _target(self, device, size, min(samples or BAKE_SAMPLES, device.max_samples))
-        # Where the moving picture has no samples, a draft needs none either.
+        # Where the person has no samples, a draft needs none either.
         self.raw_draft = self.raw if samples else _target(self, device, size, 0)
-        self.still = _target(self, device, size, samples)
+        self.still = _target(self, device, size, 0)
+        self.behind = _target(self, device, size, samples) if samples else None
         self.plain = self.own(Picture(device, size))
         self.dark = self.own(Picture(device, size))
         small = (max(1, size[0] // 4), max(1, size[1] // 4))
         self.blur = (self.own(Picture(device, small)), self.own(Picture(device, small)))
 
     def resolve(self, raw: moderngl.Framebuffer) -> None:
-        """Copy the raw colour to ``plain`` and the raw depth to ``still``."""
+        """Copy the raw colour to ``plain`` and the raw depth to ``still`` and ``behind``."""
         self._context.copy_framebuffer(self.still, raw)
         self.resolve_colour(raw)
+        if self.behind is not None:
+            # Depth alone cannot be copied: its colour is wiped out afterwards.
+            self._context.copy_framebuffer(self.behind, raw)
+            self.behind.use()
+            self.behind.depth_mask = False
+            self.behind.clear()
+            self.behind.depth_mask = True
 
     def resolve_colour(self, raw: moderngl.Framebuffer) -> None:
         self._context.copy_framebuffer(self.plain.target, raw)
@@ -79,8 +72,8 @@ class FrameTargets(Owner):
     """Everything that depends on the picture's size and samples.
 
     size: of the scene; full: of the picture with the interface, where the scene is drawn smaller.
-    work: the still picture with the character drawn into it; resolved: the same without samples; output: with the
-    interface. Without samples, work takes the place of the others.
+    work: the still picture with everything that moves drawn into it; person: a layer with samples for the person alone,
+    None without samples; output: with the interface, where the scene is drawn smaller.
     """
 
     def __init__(self, device: Device, full: tuple[int, int], samples: int, scale: float = 1.0) -> None:
@@ -88,6 +81,6 @@ class FrameTargets(Owner):
         size = (max(1, round(full[0] * scale)), max(1, round(full[1] * scale)))
         self.size, self.full, self.samples = size, full, samples
         self.bake = self.own(BakeTargets(device, size, samples))
-        self.work = _target(self, device, size, samples)
-        self.resolved = self.own(Picture(device, size)).target if samples else self.work
-        self.output = self.own(Picture(device, full)).target if samples or size != full else self.work
+        self.work = _target(self, device, size, 0)
+        self.person = _target(self, device, size, samples) if samples else None
+        self.output = self.own(Picture(device, full)).target if size != full else self.work

@@ -6,7 +6,8 @@ makes the palette's colours a little lighter or darker inside it. What is too sm
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -118,10 +119,18 @@ def weave_distance(motif: str, size: int = TILE_PX) -> Floats:
     return MOTIFS[motif](u, v)
 
 
-def weave_tiles() -> NDArray[np.uint8]:
-    """(motifs, TILE_PX, TILE_PX): all motifs in order of name, distances of ±REACH as 0 to 255."""
-    tiles = [np.clip(weave_distance(name) / (2.0 * REACH) + 0.5, 0.0, 1.0) for name in MOTIFS]
-    return np.rint(np.stack(tiles) * 255.0).astype(np.uint8)
+def weave_tiles(worn: Collection[int] = range(len(MOTIFS))) -> NDArray[np.uint8]:
+    """(motifs, TILE_PX, TILE_PX): all motifs in order of name, distances of ±REACH as 0 to 255; blank those not
+    ``worn``, which nobody looks at."""
+    return np.stack(
+        [_tile(name) if i in worn else np.zeros((TILE_PX, TILE_PX), np.uint8) for i, name in enumerate(MOTIFS)]
+    )
+
+
+@lru_cache(maxsize=16)
+def _tile(name: str) -> NDArray[np.uint8]:
+    share = np.clip(weave_distance(name) / (2.0 * REACH) + 0.5, 0.0, 1.0)
+    return np.asarray(np.rint(share * 255.0), dtype=np.uint8)
 
 
 def tinted(colour: Floats, strength: float) -> Floats:

@@ -2,6 +2,7 @@
 // Factors and vertex colours are linear, pictures are decoded from sRGB by the sampler: materials are mixed in linear
 // light, as their specification says, and encoded at the end; the hour's tints and the rims are display-referred.
 #include "toon.glsl"
+#include "sunlight.glsl"
 #include "grade.glsl"
 #include "srgb.glsl"
 #needs UNLIT CUT BLEND

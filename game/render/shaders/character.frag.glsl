@@ -2,13 +2,17 @@
 #include "toon.glsl"
 #include "woven.glsl"
 #needs SKIN FACE HAIR GLOSS LAMP WOVEN
-in vec4 v_terms;
-in vec4 v_shadow;
-flat in vec3 v_lit;
-flat in vec3 v_shade;
+in vec3 v_terms;
+in vec2 v_sun;
+in vec3 v_above;
+flat in vec3 v_bright;
+flat in vec3 v_brighter;
 flat in vec3 v_deep;
 #if FACE || HAIR || LAMP || WOVEN
 in vec4 v_extra;
+#endif
+#if HAIR
+flat in vec3 v_gleam;
 #endif
 #if FACE
 uniform sampler2D face_texture;
@@ -18,7 +22,7 @@ uniform vec3 head_left;     // unit vector to the person's left
 out vec4 colour;
 void main() {
     float h = v_terms.x;
-    float sun = sunlight(v_shadow.xyz);
+    float sun = sat(v_sun.x);
 #if FACE
     sun = mix(sun, 1.0, v_extra.w);
     float side = dot(light.xyz, head_left);
@@ -26,7 +30,7 @@ void main() {
     h += plane * v_extra.z * sat(abs(side) * 3.0 - 0.1);
 #endif
     float lit_share;
-    vec3 c = three_tones(v_lit, v_shade, v_deep, h, sun, v_terms.w, FACE == 1 ? 0.030 : 0.018, lit_share);
+    vec3 c = three_tones(v_bright, v_brighter, v_deep, v_above, h, sun, FACE == 1 ? 0.030 : 0.018, lit_share);
 #if WOVEN
     c = woven(c, v_extra);
 #endif
@@ -34,12 +38,10 @@ void main() {
     c = skin_terminator(c, h, sun);
 #endif
 #if HAIR
-    float az = v_extra.x;
-    float e = v_extra.y + 0.030 * sin(az * 13.0) + 0.012 * sin(az * 37.0 + 1.0);
-    float wide = sat((e - 0.385) * 66.0) * sat((0.495 - e) * 50.0);
-    float thin = sat((e - 0.335) * 100.0) * sat((0.367 - e) * 100.0);
-    vec3 gleam = mix(v_lit * 1.45 + vec3(0.13, 0.09, 0.04), vec3(1.0, 0.80, 0.58) * tint_lit.rgb, 0.25);
-    c = mix(c, gleam, sat(wide * 0.72 + thin * 0.35) * mix(0.35, 1.0, lit_share) * sat(v_shadow.w * 2.5 - 0.12));
+    float e = v_extra.y;
+    float wide = sat(e * 66.0 - 25.41) * sat(24.75 - e * 50.0);
+    float thin = sat(e * 100.0 - 33.5) * sat(36.7 - e * 100.0);
+    c = mix(c, v_gleam, (wide * 0.72 + thin * 0.35) * (0.35 + 0.65 * lit_share) * sat(v_sun.y * 2.5 - 0.12));
 #endif
 #if GLOSS
     c = mix(c, vec3(1.0, 0.98, 0.93) * tint_lit.rgb, sat((h - 0.955) * 60.0) * 0.8 * sun);

@@ -11,6 +11,10 @@ layout(std140) uniform Frame {
     vec4 tint_lit;         // rgb: what the hour of the day makes of lit palette colours; w: lamps, 0 out to 1 bright
     vec4 tint_shade;       // rgb: of shaded ones
     vec4 tint_deep;        // rgb: of the darkest, and of outlines
+    vec4 rim_warm_gain;    // rgb: what the warm back light makes of a colour, times it …
+    vec4 rim_warm_glow;    // … and beside it
+    vec4 rim_cool_gain;
+    vec4 rim_cool_glow;
     vec4 tint_rim;         // rgb: of the back lights
 };
 float sat(float v) { return clamp(v, 0.0, 1.0); }

@@ -1,5 +1,6 @@
 // Props and stall; shaded per pixel because they are baked once per camera.
 #include "toon.glsl"
+#include "sunlight.glsl"
 #include "light_terms.glsl"
 #needs GLOSS FLAT
 in vec3 v_world;
@@ -17,7 +18,8 @@ void main() {
     float bias = 0.0012 + 0.0022 * (1.0 - sat(n_dot_light));
     float sun = sunlight(v_shadow - vec3(0, 0, bias)) * sun_share;
     float lit_share;
-    vec3 c = three_tones(v_lit, v_shade, v_deep, terms.x, sun, terms.w, 0.018, lit_share);
+    vec3 above = under_sky(v_shade, terms.w) - v_deep;
+    vec3 c = three_tones(v_lit * BRIGHT, v_lit * BRIGHTER, v_deep, above, terms.x, sun, 0.018, lit_share);
 #if GLOSS
     float spot = pow(max(dot(n, normalize(light.xyz + to_eye)), 0.0), 60.0);
     c = mix(c, vec3(1.0, 0.98, 0.93) * tint_lit.rgb, smoothstep(0.35, 0.5, spot) * 0.85 * sun);

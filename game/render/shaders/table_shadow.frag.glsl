@@ -1,5 +1,5 @@
 // Where the character keeps the sun off the table, the picture of the table in full shadow shows.
-#include "toon.glsl"
+#include "sunlight.glsl"
 in vec3 v_shadow;
 uniform sampler2D dark_picture;
 out vec4 colour;
