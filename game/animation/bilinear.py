@@ -11,9 +11,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["affine", "conjugate", "from_matrix", "multiply", "normalize", "rotation_matrix"]
+__all__ = [
+    "affine",
+    "back_and_forth",
+    "conjugate",
+    "from_matrix",
+    "in_pairs",
+    "multiply",
+    "normalize",
+    "product",
+    "rotation_matrix",
+]
 
 Floats = NDArray[np.floating[Any]]
+Ints = NDArray[np.intp]
 
 
 def _left_table() -> Floats:
@@ -66,11 +77,38 @@ def _candidates_table() -> tuple[Floats, Floats]:
 
 
 _LEFT = _left_table()
+# (4, 16): the products of two quaternions' components -> their product.
+_PAIRS = np.ascontiguousarray(_LEFT.reshape(4, 4, 4).transpose(1, 0, 2)).reshape(4, 16)
 _FACTORS, _MATRIX = _matrix_tables()
 _CANDIDATES, _CANDIDATES_AT_ZERO = _candidates_table()
+# Which components of a and of b the 16 products take.
+_LEFT_OF_PAIR, _RIGHT_OF_PAIR = np.repeat(np.arange(4), 4), np.tile(np.arange(4), 4)
+
+
+def _candidates_of_pairs() -> Floats:
+    """(16, 28): from 27 products B_ij·F_ik, and 1, to outer(q, q)·4 of BᵀF."""
+    sums = np.broadcast_to(np.eye(9, dtype=np.float32).reshape(9, 1, 9), (9, 3, 9)).reshape(9, 27)
+    return np.concatenate([_CANDIDATES.T @ sums, _CANDIDATES_AT_ZERO[:, None]], axis=1)
+
+
+_CANDIDATES_OF_PAIRS = _candidates_of_pairs()
+_COMPONENTS = np.arange(4)[:, None]
 _SUM = np.ones((4, 4), dtype=np.float32)
 _CONJUGATE = np.array([-1, -1, -1, 1], dtype=np.float32)
-for _table in (_LEFT, _FACTORS, _MATRIX, _CANDIDATES, _CANDIDATES_AT_ZERO, _SUM, _CONJUGATE):
+for _table in (
+    _LEFT,
+    _PAIRS,
+    _LEFT_OF_PAIR,
+    _RIGHT_OF_PAIR,
+    _CANDIDATES_OF_PAIRS,
+    _COMPONENTS,
+    _FACTORS,
+    _MATRIX,
+    _CANDIDATES,
+    _CANDIDATES_AT_ZERO,
+    _SUM,
+    _CONJUGATE,
+):
     _table.setflags(write=False)
 
 
@@ -100,6 +138,33 @@ def affine(q: Floats, out: Floats | None = None) -> Floats:
 def rotation_matrix(q: Floats) -> Floats:
     """Unit quaternions (..., 4) -> (..., 3, 3), a view of affine(q)."""
     return affine(q)[..., :3, :3]
+
+
+def product(a: Floats, b: Floats) -> Floats:
+    """a·b (b first), (4, ...) each, which broadcast: a component is a row over everything else."""
+    pairs = a.take(_LEFT_OF_PAIR, axis=0) * b.take(_RIGHT_OF_PAIR, axis=0)
+    return np.asarray((_PAIRS @ pairs.reshape(16, -1)).reshape(4, *pairs.shape[1:]))
+
+
+def back_and_forth(elements: Floats, back: Ints, forth: Ints) -> Floats:
+    """Unit quaternions (4, m, n), of either sign, of BᵀF. elements: (E, n) numbers; back, forth: (28, m) where among
+    them B and F are (see in_pairs)."""
+    candidates = _CANDIDATES_OF_PAIRS @ (elements.take(back, axis=0) * elements.take(forth, axis=0)).reshape(28, -1)
+    best = candidates[::5].argmax(axis=0)
+    # Any row of outer(q, q) is q up to scale; the one with the largest diagonal is the best conditioned.
+    found = candidates[4 * best + _COMPONENTS, np.arange(len(best))]
+    found /= np.sqrt(_SUM @ (found * found))
+    return np.asarray(found.reshape(4, -1, elements.shape[1]))
+
+
+def in_pairs(places: Ints, one: int) -> tuple[Ints, Ints]:
+    """places: (3, 3, m) of matrices' elements -> (28, m) of the left and the right factors that back_and_forth asks
+    for; one: place of a number that is 1."""
+    m = places.shape[2]
+    back = np.broadcast_to(places[:, :, None], (3, 3, 3, m)).reshape(27, m)
+    forth = np.broadcast_to(places[:, None], (3, 3, 3, m)).reshape(27, m)
+    ones = np.full((1, m), one)
+    return np.concatenate([back, ones]), np.concatenate([forth, ones])
 
 
 def from_matrix(matrix: Floats) -> Floats:

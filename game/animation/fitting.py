@@ -148,7 +148,7 @@ class Fitting:
         palm = place[:, :2] + reach
         place[:, :2] = self._palms(reference, mine, palm) - np.float32(self.hand) * reach
         place[:, 2:] = self.feet[1] + np.float32(self.leg) * (place[:, 2:] - self.feet[0])
-        place_limbs(self.limbs, rotation, mine.take(figure.BONES, axis=1), goal)
+        place_limbs(self.limbs, rotation, np.concatenate([mine.take(figure.BONES, axis=1), goal], axis=1))
 
     def _palms(self, reference: Floats, mine: Floats, palm: Floats) -> Floats:
         """Where the palms (n, 2, 3) of the reference are on this body.
@@ -284,7 +284,7 @@ def _limbs(lengths: Floats) -> limbs.Limbs:
     made = limbs.limbs_of(lengths[0], lengths[1], np.zeros(4, dtype=bool))
     full = lengths.sum(0)[:2]
     knee, room = made.knee.copy(), made.room.copy()
-    knee[:2], room[:2] = _REACH_SOFT * full, (_REACH_FULL - _REACH_SOFT) * full
+    knee[:2, 0], room[:2, 0] = _REACH_SOFT * full, (_REACH_FULL - _REACH_SOFT) * full
     return replace(made, knee=knee, room=room)
 
 

@@ -140,7 +140,8 @@ class Performer:
             push = contacts.advance_push(push, wanted, dt_s)
             goal[:, :2, :3, 3] += push[:, 0]
         rotation = turns[:, : ch.JOINTS]
-        place_limbs(_LIMBS, rotation, matrices.take(_BONES, axis=1), goal)
+        bones = np.concatenate([matrices.take(_BONES, axis=1), goal], axis=1)
+        place_limbs(_LIMBS, rotation, bones)
         head, chest = matrices[:, _HEAD], matrices[:, _CHEST]
         gaze = liveliness.look(self.life, life, state.gaze, signal.gaze_target, head, chest, _EYES, dt_s)
         pose = Pose(rotation, row[:, ch.ROOT], gaze.eye, life.lids, life.lungs)

@@ -41,8 +41,10 @@ def solved(elbow_deg: float, target: object, kind: limbs.Limbs = LEG) -> tuple[n
     joint = np.array([0.216, 0, 0])
     end = joint + 0.206 * np.array([np.cos(angle), 0, np.sin(angle)])
     goal = end if target is None else np.asarray(target)
-    points = np.array([np.zeros(3), joint, end, goal], dtype=np.float32)[None, :, None]
-    fix = limbs.solve_limbs(kind, points, limbs.HINGE_WEIGHT_M * np.array([[[0, 1, 0]]], dtype=np.float32))[0][0, :, 0]
+    points = np.array([np.zeros(3), joint, end, goal], dtype=np.float32).T[:, :, None, None]
+    hinge = limbs.HINGE_WEIGHT_M * np.array([0, 1, 0], dtype=np.float32)[:, None, None]
+    opened, swing = limbs.solve_limbs(kind, points, hinge)
+    fix = bl.product(swing[:, None], opened[:, ::2])[..., 0, 0].T
     upper, lower = (Rotation.from_quat(q) for q in fix)
     return upper.apply(joint) + lower.apply(end - joint), fix
 
