@@ -56,6 +56,7 @@ class Arithmetic:
     """least, most: of two; any: whether a condition holds for somebody; where: the second or the third by the first."""
 
     sin: Callable[[Number], Number]
+    cos: Callable[[Number], Number]
     exp: Callable[[Number], Number]
     arctan2: Callable[[Number, Number], Number]
     hypot: Callable[[Number, Number], Number]
@@ -66,9 +67,18 @@ class Arithmetic:
     curve: Callable[[Curve, Number], Number]
 
 
-_ALONE = Arithmetic(math.sin, math.exp, math.atan2, math.hypot, min, max, bool, _chosen, Curve.at)
+_ALONE = Arithmetic(math.sin, math.cos, math.exp, math.atan2, math.hypot, min, max, bool, _chosen, Curve.at)
 _MANY = Arithmetic(
-    np.sin, np.exp, np.arctan2, np.hypot, np.minimum, np.maximum, lambda c: bool(np.any(c)), np.where, _interpolated
+    np.sin,
+    np.cos,
+    np.exp,
+    np.arctan2,
+    np.hypot,
+    np.minimum,
+    np.maximum,
+    lambda c: bool(np.any(c)),
+    np.where,
+    _interpolated,
 )
 
 
@@ -85,7 +95,10 @@ def numbers(array: Floats) -> Sequence[Number]:
 
 
 def columns(values: Sequence[Number], n: int, dtype: Any = np.float64) -> Floats:
-    """k numbers of n characters -> (n, k)."""
+    """k numbers of n characters, some of which may be the same for all -> (n, k)."""
     if n == 1:
         return np.array([values], dtype=dtype)
-    return np.stack(values, axis=1).astype(dtype, copy=False)
+    made = np.empty((len(values), n), dtype=dtype)
+    for row, value in zip(made, values, strict=True):
+        row[:] = value
+    return made.T

@@ -19,7 +19,7 @@ from game.animation.chains import chains_of, to_model
 from game.core.humanoid import REFERENCE
 from game.core.springs import half_life_to_damping
 
-__all__ = ["FRAMES", "SLOTS", "advance_push", "body_matrices", "clearance", "goals", "slot"]
+__all__ = ["FRAMES", "GOALS", "SLOTS", "advance_push", "aim", "body_matrices", "clearance", "slot"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -28,8 +28,10 @@ PUSH_HALF_LIFE_S = 0.025
 _GONE_M = np.float32(1e-7)
 
 _FIRST = 3
-SLOTS = _FIRST + len(figure.FIGURE)
-"""Matrices per character: table, left and right palm, figure."""
+_GOALS = _FIRST + len(figure.FIGURE)
+SLOTS = _GOALS + 4
+"""Matrices per character: table, left and right palm, figure, and where both hands and both feet shall be."""
+GOALS = slice(_GOALS, SLOTS)
 
 
 def slot(joint: str) -> int:
@@ -52,50 +54,49 @@ _FEET[:, :3, 3] = figure.FEET_WORLD
 _IN_HAND = np.zeros((2, 2 + ch.POINTS_PER_HAND, 4), dtype=np.float32)
 _IN_HAND[..., 3] = 1.0
 _IN_HAND[:, 1, 0] = 0.05, -0.05
-# The middle of the forearm from its elbow, its wrist in the clip and the wrist that is wanted: the elbow follows the
-# wrist about half way.
-_FOREARM = np.array([[0.5, 0.0, -0.25, 0.0], [0.0, 0.5, 0.0, -0.25]], dtype=np.float32)
-_WRIST_SHARE = np.float32(0.75)
+# The middle of the forearm from its elbow, its wrist in the clip and the wrist that is wanted, in the order in which
+# they stand in body_matrices: the elbow follows the wrist about half way.
+_FOREARM = np.array([[0.5, 0.0, -0.25, 0.0, 0.75, 0.0], [0.0, 0.5, 0.0, -0.25, 0.0, 0.75]], dtype=np.float32)
+_ARMS = slice(_GOALS - 4, _GOALS + 2)
 for _array in (FRAMES, _QUATERNIONS, _OFFSET, _BODY, _TABLE, _FEET, _IN_HAND, _FOREARM):
     _array.setflags(write=False)
 
 
 def body_matrices(turns: Floats, places: Floats) -> Floats:
     """turns: (n, 43, 4) unit quaternions of ch.TURNS, places: (n, 9) of ch.PLACES -> (n, SLOTS, 4, 4): the table, the
-    palms in their contact frames, and in model space the figure."""
+    palms in their contact frames, and in model space the figure. The goals are left to aim."""
     n = len(turns)
     matrices = np.empty((n, SLOTS, 4, 4), dtype=np.float32)
     matrices[:, 0] = _TABLE
-    bl.affine(turns.take(_QUATERNIONS, axis=1), out=matrices.reshape(n, SLOTS, 16)[:, 1:])
+    bl.affine(turns.take(_QUATERNIONS, axis=1), out=matrices.reshape(n, SLOTS, 16)[:, 1:_GOALS])
     matrices[:, 1:4, :3, 3] = places.reshape(n, 3, 3)
-    matrices[:, 4:, :3, 3] = _OFFSET
+    matrices[:, 4:_GOALS, :3, 3] = _OFFSET
     to_model(matrices, _CHAINS)
     return matrices
 
 
-def goals(matrices: Floats, frame: NDArray[np.intp]) -> Floats:
-    """(n, 4, 4, 4) where both hands are wanted, kept in their contact frames (n, 2), and where the feet stand."""
+def aim(matrices: Floats, frame: NDArray[np.intp]) -> None:
+    """Writes the goals: both hands are kept in their contact frames (n, 2), the feet stand."""
     n = len(matrices)
-    goal = np.empty((n, 4, 4, 4), dtype=np.float32)
     at = FRAMES.take(frame)
     at += np.arange(0, n * SLOTS, SLOTS)[:, None]
-    np.matmul(matrices.reshape(-1, 4, 4).take(at, axis=0), matrices[:, 1:3], out=goal[:, :2])
-    goal[:, 2:] = _FEET
-    return goal
+    np.matmul(matrices.reshape(-1, 4, 4).take(at, axis=0), matrices[:, 1:3], out=matrices[:, _GOALS : _GOALS + 2])
+    matrices[:, _GOALS + 2 :] = _FEET
 
 
-def clearance(matrices: Floats, hand: Floats, points: Floats) -> Floats | None:
+def clearance(matrices: Floats, points: Floats) -> Floats | None:
     """The push (n, 2, 3), metres, that keeps both hands and forearms out of body and table, None where they are.
 
-    hand: (n, 2, 4, 4) where they are wanted; points: (n, 24) of ch.POINTS.
+    points: (n, 24) of ch.POINTS.
     """
     n = len(matrices)
     local = np.empty((n, *_IN_HAND.shape), dtype=np.float32)
     local[:] = _IN_HAND
     local[:, :, 2:, :3] = points.reshape(n, 2, ch.POINTS_PER_HAND, 3)
     model = np.empty((n, 2, 7, 4), dtype=np.float32)
+    hand = matrices[:, _GOALS : _GOALS + 2]
     np.matmul(local, hand.swapaxes(-1, -2), out=model[:, :, :6])
-    np.add(_FOREARM @ matrices[:, -4:, :, 3], _WRIST_SHARE * hand[..., 3], out=model[:, :, 6])
+    np.matmul(_FOREARM, matrices[:, _ARMS, :, 3], out=model[:, :, 6])
     return collision.push_out(collision.body_frames(matrices.take(_BODY, axis=1)), model.reshape(n, 14, 4))
 
 

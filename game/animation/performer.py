@@ -37,7 +37,8 @@ body does (the face is another stage's); ``face``: the body stands still at neut
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
 _EYES = np.array(HEAD_CENTRE_OFFSET, dtype=np.float32)
 _LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array([True, True, False, False]))
-_BONES = contacts.slot("hips") + figure.BONES
+_HANDS = slice(contacts.GOALS.start, contacts.GOALS.start + 2)
+_BONES = np.append(contacts.slot("hips") + figure.BONES, np.arange(contacts.GOALS.start, contacts.GOALS.stop))
 _HEAD, _CHEST = contacts.slot("head"), contacts.slot("chest")
 for _array in (_NEUTRAL, _EYES, _BONES):
     _array.setflags(write=False)
@@ -134,14 +135,13 @@ class Performer:
         n = len(row)
         turns = bl.normalize(row[:, ch.TURNS].reshape(n, -1, 4))
         matrices = contacts.body_matrices(turns, row[:, ch.PLACES])
-        goal, push = contacts.goals(matrices, blend.source.frame), state.push
+        contacts.aim(matrices, blend.source.frame)
+        push = state.push
         if self.collide:
-            wanted = contacts.clearance(matrices, goal[:, :2], row[:, ch.POINTS])
-            push = contacts.advance_push(push, wanted, dt_s)
-            goal[:, :2, :3, 3] += push[:, 0]
+            push = contacts.advance_push(push, contacts.clearance(matrices, row[:, ch.POINTS]), dt_s)
+            matrices[:, _HANDS, :3, 3] += push[:, 0]
         rotation = turns[:, : ch.JOINTS]
-        bones = np.concatenate([matrices.take(_BONES, axis=1), goal], axis=1)
-        place_limbs(_LIMBS, rotation, bones)
+        place_limbs(_LIMBS, rotation, matrices.take(_BONES, axis=1))
         head, chest = matrices[:, _HEAD], matrices[:, _CHEST]
         gaze = liveliness.look(self.life, life, state.gaze, signal.gaze_target, head, chest, _EYES, dt_s)
         pose = Pose(rotation, row[:, ch.ROOT], gaze.eye, life.lids, life.lungs)
@@ -190,5 +190,5 @@ def _shares(signal: PerformSignal) -> Floats:
     """Felt emotion as shares that sum to 1 (their sum is never below 1, eq. 4); neutral where the body is held."""
     if signal.mode == "face":
         return np.broadcast_to(_NEUTRAL, signal.emotion.shape)
-    total = np.maximum(signal.emotion.sum(axis=-1, keepdims=True), 1e-9)
-    return np.asarray(signal.emotion / total)
+    total = np.add.reduce(signal.emotion, axis=-1, keepdims=True)
+    return np.asarray(signal.emotion / np.maximum(total, 1e-9, out=total))

@@ -49,11 +49,12 @@ first."""
 class Playback:
     """n characters, L layers.
 
-    unit: (n, L). first: (n, L, 7) rows of the chosen variants. lap_frames: (n, L, 7) frames a posture's loops take, ∞
-    for what is played once; before_last: (n, L, 7) the last frame but one. weight: (n, L, 7) the posture's of eq. 5,
-    which drift; the others' as they are mixed. timing: (10, n, L) of game.animation.pace. elapsed_s: (n, L) since the
-    unit started (a posture: position in its loops). lap: (n, L) repeats already made. active: (n, L) False once a unit
-    has played to its end. index: (n, L, 7) rows last shown.
+    unit: (n, L). first: (n, L, 2, 7) rows of the chosen variants, and the next ones. lap_frames: (n, L, 7) frames a
+    posture's loops take, ∞ for what is played once; before_last: (n, L, 7) the last frame but one. weight: (n, L, 7) of
+    eq. 5, as mixed. held: (n, 7) the posture's before the least were left out, which drift. timing: (10, n, L) of
+    game.animation.pace. elapsed_s: (n, L) since the unit started (a posture: position in its loops). lap: (n, L)
+    repeats already made. active: (n, L) False once a unit has played to its end; running: in how many, by layer.
+    calm_s: all units go on at an even pace for so long. index: (n, L, 2, 7) rows last shown.
     """
 
     unit: Ints
@@ -61,11 +62,14 @@ class Playback:
     lap_frames: Floats
     before_last: Floats
     weight: Floats
+    held: Floats
     timing: Floats
     elapsed_s: Floats
     lap: Floats
     active: Bools
+    running: tuple[int, ...]
     stretch: Stretch
+    calm_s: float
     index: Ints
 
     @property
@@ -76,11 +80,16 @@ class Playback:
     def of(self, who: Ints) -> Playback:
         """Some of the characters."""
         arrays = {name: array[:, who] if name == "timing" else array[who] for name, array in _arrays(self)}
-        return Playback(**arrays, stretch=Stretch(**{name: array[who] for name, array in _arrays(self.stretch)}))
+        stretch = Stretch(**{name: array[who] for name, array in _arrays(self.stretch)})
+        return Playback(**arrays, running=_running(arrays["active"]), stretch=stretch, calm_s=self.calm_s)
 
 
 def _arrays(state: Playback | Stretch) -> list[tuple[str, NDArray[Any]]]:
     return [(name, value) for name, value in vars(state).items() if isinstance(value, np.ndarray)]
+
+
+def _running(active: Bools) -> tuple[int, ...]:
+    return tuple(np.count_nonzero(active, axis=0).tolist())
 
 
 def of_some(values: Layered, who: Ints, n: int) -> Layered:
@@ -102,16 +111,19 @@ def start(n: int, layers: int) -> Playback:
     shape = (n, layers)
     return Playback(
         unit=np.full(shape, -1, dtype=np.intp),
-        first=np.zeros((*shape, 7), dtype=np.float32),
+        first=np.zeros((*shape, 2, 7), dtype=np.float32),
         lap_frames=np.ones((*shape, 7), dtype=np.float32),
         before_last=np.zeros((*shape, 7), dtype=np.float32),
         weight=np.zeros((*shape, 7), dtype=np.float32),
+        held=np.zeros((n, 7), dtype=np.float32),
         timing=np.zeros((10, *shape), dtype=np.float32),
         elapsed_s=np.zeros(shape, dtype=np.float32),
         lap=np.zeros(shape, dtype=np.float32),
         active=np.zeros(shape, dtype=bool),
+        running=(0,) * layers,
         stretch=pace.unknown(shape),
-        index=np.zeros((*shape, 7), dtype=np.intp),
+        calm_s=0.0,
+        index=np.zeros((*shape, 2, 7), dtype=np.intp),
     )
 
 
@@ -169,17 +181,23 @@ def begin(
 
     timings = state.timing.copy()
     timings[:, who[0], who[1]] = timing
+    held_weight = state.held.copy()
+    held_weight[who[0][loops]] = w[loops]
+    active = put(state.active, bank.count[u].any(axis=-1))
     return Playback(
         unit=put(state.unit, u),
-        first=put(state.first, first),
+        first=put(state.first, first[:, None] + _THIS_AND_NEXT),
         lap_frames=put(state.lap_frames, np.where(loops[:, None], length, np.inf)),
         before_last=put(state.before_last, length - 1.0),
-        weight=put(state.weight, np.where(loops[:, None], w, _shares(w))),
+        weight=put(state.weight, _shares(w)),
+        held=held_weight,
         timing=timings,
         elapsed_s=put(state.elapsed_s, phase - dt_s),
         lap=put(state.lap, 0.0),
-        active=put(state.active, bank.count[u].any(axis=-1)),
+        active=active,
+        running=_running(active),
         stretch=replace(state.stretch, until_s=put(state.stretch.until_s, -np.inf)),
+        calm_s=0.0,
         index=state.index,
     )
 
@@ -229,61 +247,62 @@ def advance_playback(
     to its end, None where none did.
     """
     step, gain = _step(dt_s)
-    elapsed, stretch = state.elapsed_s + step, state.stretch
-    active, lap, jumped = state.active, state.lap, None
-    due = elapsed >= stretch.until_s
-    if np.count_nonzero(due):
+    elapsed, stretch, calm_s = state.elapsed_s + step, state.stretch, state.calm_s - dt_s
+    active, running, lap, jumped = state.active, state.running, state.lap, None
+    if calm_s <= 0.0:
+        due = elapsed >= stretch.until_s
         stretch, lap, ended = next_stretch(stretch, due & active, state.timing, state.lap_frames, elapsed, lap)
         jumped = ended | (lap != state.lap)
         if np.count_nonzero(ended):
             active = active & ~ended
+            running = _running(active)
+        calm_s = float((stretch.until_s - elapsed).min())
     at = elapsed * stretch.rate
     at += stretch.base
     frame = at[:, :, None] - stretch.wrapped
-    weight, mixed = state.weight.copy(), state.weight.copy()
-    drifted = _drifted(bank, weight[:, posture_layer], state.unit[:, posture_layer], emotion, gain)
-    weight[:, posture_layer] = drifted
-    mixed[:, posture_layer] = _shares(drifted)
+    held = _drifted(bank, state.held, state.unit[:, posture_layer], emotion, gain)
+    weight = state.weight.copy()
+    weight[:, posture_layer] = _shares(held)
     # Where every variant is in its clip: the frame before and the share of the way to the next.
     low = np.trunc(frame)
     np.minimum(low, state.before_last, out=low)
     frame -= low
-    low += state.first
-    index = low.astype(np.intp)
+    index = (low[:, :, None] + state.first).astype(np.intp)
     mix = np.empty((*weight.shape[:2], 2, 7), dtype=np.float32)
-    after = np.multiply(mixed, frame, out=mix[:, :, 1])
-    np.subtract(mixed, after, out=mix[:, :, 0])
-    values = _mixed(bank, index, mix, active, posture_layer)
+    after = np.multiply(weight, frame, out=mix[:, :, 1])
+    np.subtract(weight, after, out=mix[:, :, 0])
     state = Playback(
-        state.unit, state.first, state.lap_frames, state.before_last,
-        weight, state.timing, elapsed, lap, active, stretch, index,
+        state.unit, state.first, state.lap_frames, state.before_last, weight, held,
+        state.timing, elapsed, lap, active, running, stretch, calm_s, index,
     )  # fmt: skip
+    values = _mixed(bank, state, mix, posture_layer)
     return values, state, jumped
 
 
 def speeds(bank: MotionBank, state: Playback, posture_layer: int) -> Layered:
     """How fast what the running layers say changes, per second."""
-    mixed = state.weight.copy()
-    mixed[:, posture_layer] = _shares(mixed[:, posture_layer])
-    mix = np.empty((*mixed.shape[:2], 2, 7), dtype=np.float32)
-    after = np.multiply(mixed, state.stretch.rate[:, :, None], out=mix[:, :, 1])
+    mix = np.empty((*state.weight.shape[:2], 2, 7), dtype=np.float32)
+    after = np.multiply(state.weight, state.stretch.rate[:, :, None], out=mix[:, :, 1])
     np.negative(after, out=mix[:, :, 0])
-    return _mixed(bank, state.index, mix, state.active, posture_layer)
+    return _mixed(bank, state, mix, posture_layer)
 
 
-def _mixed(bank: MotionBank, index: Ints, mix: Floats, active: Bools, posture_layer: int) -> Layered:
-    """Rows at index (n, L, 7) and the next ones, mixed (n, L, 2, 7)."""
-    n, layers = active.shape
-    both = index[:, :, None] + _THIS_AND_NEXT
+@lru_cache(maxsize=16)
+def _order(posture_layer: int, layers: int) -> tuple[int, ...]:
+    return posture_layer, *(layer for layer in range(layers) if layer != posture_layer)
+
+
+def _mixed(bank: MotionBank, state: Playback, mix: Floats, posture_layer: int) -> Layered:
+    """Rows at the state's index, mixed (n, L, 2, 7)."""
+    n = len(mix)
     values: Layered = []
-    for layer in (posture_layer, *(k for k in range(layers) if k != posture_layer)):
-        who = None
-        running = np.count_nonzero(active[:, layer])
+    for layer in _order(posture_layer, len(state.running)):
+        who, running = None, state.running[layer]
         if running == 0:
             continue
-        frames, shares = both[:, layer], mix[:, layer]
+        frames, shares = state.index[:, layer], mix[:, layer]
         if running < n:
-            who = np.flatnonzero(active[:, layer])
+            who = np.flatnonzero(state.active[:, layer])
             frames, shares = frames.take(who, axis=0), shares.take(who, axis=0)
         frames, shares = frames.reshape(running, -1), shares.reshape(running, -1)
         if n >= PRUNE_FROM:

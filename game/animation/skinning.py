@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import bilinear as bl
+from game.animation.arithmetic import Number, arithmetic, columns, numbers
 from game.animation.body_size import BodySize
 from game.animation.chains import CROWD, to_model
 from game.animation.crowd import crowd_matrices
@@ -38,7 +39,6 @@ Floats = NDArray[np.floating[Any]]
 TWIST_SHARE = 0.5
 """The twist joint in the middle of a forearm takes this share of the hand's twist."""
 MAX_TWIST_RAD = 2.6
-_ONE = np.float32(1.0)
 
 TIP_SHARE = 0.65
 """The outermost joint of a finger bends this much as far as the one before it."""
@@ -306,10 +306,11 @@ def _part(turn: Floats) -> Floats:
 
 def _half_twist(hand: Floats) -> Floats:
     """Local hand rotations (n, T, 4) -> half of their twist about the forearm (the x axis)."""
-    x, w = hand[..., 0], hand[..., 3]
-    half = np.arctan2(x * np.copysign(_ONE, w), np.abs(w))
-    half = np.minimum(np.maximum(half, -0.5 * MAX_TWIST_RAD), 0.5 * MAX_TWIST_RAD) * TWIST_SHARE
-    twist = np.zeros(hand.shape, dtype=np.float32)
-    np.sin(half, out=twist[..., 0])
-    np.cos(half, out=twist[..., 3])
-    return twist
+    n = len(hand)
+    do, parts = arithmetic(n), numbers(hand.reshape(n, -1))
+    twist: list[Number] = []
+    for x, w in zip(parts[::4], parts[3::4], strict=True):
+        half = do.arctan2(do.where(w < 0.0, -x, x), abs(w))
+        half = do.least(do.most(half, -0.5 * MAX_TWIST_RAD), 0.5 * MAX_TWIST_RAD) * TWIST_SHARE
+        twist += [do.sin(half), 0.0, 0.0, do.cos(half)]
+    return columns(twist, n, np.float32).reshape(hand.shape)
