@@ -239,6 +239,12 @@ def test_an_own_policy_plays_from_its_view_and_forgets_between_talks(assets, tmp
         ("x = open('/etc/passwd')", "the name open"),
         ("x = '{0.x}'.format(1)", "the attribute format"),
         ("x = (lambda: 0)._secret", "_secret"),
+        ("from collections import _sys", "begins with an underscore"),
+        ("from math import __loader__ as x", "begins with an underscore"),
+        ("match ():\n    case tuple(__class__=x): pass", "the attribute __class__"),
+        ("match '{0.x}':\n    case str(format=x): pass", "the attribute format"),
+        ("async def f():\n    return c.cr_frame", "the attribute cr_frame"),
+        ("def f(frame):\n    return frame.f_back", "the attribute f_back"),
         ("SEES = 'everything'", "table | words"),
         ("def move(", "Python"),
     ],
@@ -269,6 +275,61 @@ def test_an_own_policy_that_fails_is_told_in_one_line(assets, tmp_path: Path, mo
     with pytest.raises(BadInput, match=says) as caught:
         list(play_episode(seat(assets, str(path)), 1, 0))
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "reach",
+    [
+        "import dataclasses\nx = dataclasses.builtins",
+        "import dataclasses\nx = dataclasses.sys.modules",
+        "import dataclasses\nx = dataclasses.make_dataclass",
+        "import functools\nx = functools.update_wrapper",
+        "import statistics\nx = statistics.random",
+        "import collections\nx = collections.abc",
+        "x = print",
+        "x = id(1)",
+    ],
+)
+def test_what_modules_import_themselves_is_not_handed_on(tmp_path: Path, reach: str) -> None:
+    path = tmp_path / "own.py"
+    path.write_text(f'SEES = "table"\n{reach}\ndef move(view, memory, rng):\n    return {{"choice": "got out"}}\n')
+    with pytest.raises(BadInput, match=r"AttributeError|NameError|is not allowed"):
+        custom.OwnPolicy.load(path).sit(random.Random(1)).process.ask({})
+
+
+HOARDER = """
+SEES = "table"
+import collections, functools, math, statistics
+seen = []
+
+@functools.cache
+def first(number):
+    return len(seen)
+
+class Kept:
+    talks = 0
+
+def move(view, memory, rng):
+    counts = [len(seen), Kept.talks, len(memory)]
+    for thing in (math, collections, collections.Counter, collections.Counter.update, statistics.mean):
+        counts.append(thing.kept if hasattr(thing, "kept") else 0)
+        thing.kept = 1
+    seen.append(1)
+    Kept.talks += 1
+    memory["a"] = 1
+    return {"choice": ",".join(str(n) for n in counts)}
+"""
+
+
+def test_nothing_an_own_policy_hoards_outlasts_a_talk(tmp_path: Path) -> None:
+    """Which worker plays which talks must not matter, so no talk may know of another."""
+    path = tmp_path / "own.py"
+    path.write_text(HOARDER)
+    policy = custom.OwnPolicy.load(path)
+    for _ in range(3):
+        process = policy.sit(random.Random(1)).process
+        assert process.ask({}) == {"choice": ",".join("0" * 8)}
+        assert process.ask({}) == {"choice": ",".join("1" * 8)}, "within a talk it may remember"
 
 
 def test_moves_that_are_not_on_the_table_are_refused_whoever_makes_them(assets) -> None:

@@ -30,6 +30,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from game.app.policies import own_worker
 from game.app.policies.views import Table, View
 from game.app.talk import Choice
 from game.core.errors import BadInput, Where
@@ -37,7 +38,7 @@ from game.formats.files import decode_utf8, read_bytes
 
 __all__ = ["ALLOWED_IMPORTS", "OwnPolicy"]
 
-ALLOWED_IMPORTS = ("collections", "dataclasses", "functools", "itertools", "math", "statistics")
+ALLOWED_IMPORTS = tuple(own_worker.PUBLIC)
 VIEWS = ("table", "words", "face", "body", "reader", "oracle")
 MOVE_S = 5.0
 """A single move may take so long …"""
@@ -47,8 +48,9 @@ MEMORY_BYTES = 512 * 1024 * 1024
 """… and so much memory."""
 _MAX_BYTES = 200_000
 _MAX_ANSWER = 10_000
-_FORBIDDEN = ("open", "exec", "eval", "compile", "input", "breakpoint", "globals", "locals", "vars", "getattr",
-              "setattr", "delattr", "type", "object", "memoryview", "help", "exit", "quit")  # fmt: skip
+_FORBIDDEN = own_worker.AWAY - {"print"}
+_INSIDE = ("f_", "tb_", "gi_", "cr_", "ag_", "co_")
+"""Attributes of frames, tracebacks, generators and code: through them one walks out of the file."""
 
 
 class OwnPolicy:
@@ -96,12 +98,19 @@ def _check(node: ast.AST, path: Path) -> None:
         names = [node.module or ""] if isinstance(node, ast.ImportFrom) else [alias.name for alias in node.names]
         if getattr(node, "level", 0) or any(name not in ALLOWED_IMPORTS for name in names):
             wrong = f"import of {', '.join(names)} (allowed: {', '.join(ALLOWED_IMPORTS)})"
-    elif isinstance(node, ast.Attribute) and node.attr.startswith("_"):
-        wrong = f"the attribute {node.attr}"
+        elif any(alias.name.startswith("_") for alias in node.names):
+            wrong = "import of a name that begins with an underscore"
     elif isinstance(node, ast.Name) and (node.id.startswith("__") or node.id in _FORBIDDEN):
         wrong = f"the name {node.id}"
-    elif isinstance(node, ast.Attribute) and node.attr in {"format", "format_map", "gi_frame", "f_globals", "tb_frame"}:
-        wrong = f"the attribute {node.attr} (use f-strings)"
+    else:
+        # Patterns read attributes too: ``case tuple(__class__=c)``.
+        read = [node.attr] if isinstance(node, ast.Attribute) else []
+        read += node.kwd_attrs if isinstance(node, ast.MatchClass) else []
+        for name in read:
+            if name in {"format", "format_map"}:
+                wrong = f"the attribute {name} (use f-strings)"
+            elif name.startswith(("_", *_INSIDE)):
+                wrong = f"the attribute {name}"
     if wrong:
         place = Where(str(path), getattr(node, "lineno", None), getattr(node, "col_offset", 0) + 1)
         raise BadInput(f"{wrong} is not allowed in a policy", where=place)
@@ -123,20 +132,20 @@ class _OwnPlayer:
 
 
 class _Process:
-    """The file's process: plain data in and out, nothing inherited but its source."""
+    """The file's process (``own_worker``): plain data in and out, nothing inherited but its source."""
 
     def __init__(self, path: Path, source: str) -> None:
         self.path = path
         self.folder = tempfile.TemporaryDirectory(prefix="mcg-policy-")
         self.popen = subprocess.Popen(
-            [sys.executable, "-I", "-S", "-c", _WORKER],
+            [sys.executable, "-I", "-S", own_worker.__file__],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
             cwd=self.folder.name, env={"PYTHONHASHSEED": "0"}, start_new_session=True,
         )  # fmt: skip
         self._end = weakref.finalize(self, _kill, self.popen, self.folder)
         self.answers: queue.Queue[bytes] = queue.Queue()
         threading.Thread(target=_listen, args=(self.popen, self.answers), daemon=True).start()
-        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES, "imports": ALLOWED_IMPORTS})
+        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES})
 
     def send(self, message: dict[str, Any]) -> None:
         """One line to the file's process."""
@@ -186,56 +195,3 @@ def _kill(popen: subprocess.Popen[bytes], folder: tempfile.TemporaryDirectory[st
         with contextlib.suppress(OSError):
             popen.stdin.close()
     folder.cleanup()
-
-
-_WORKER = r"""
-import builtins, json, random, sys
-
-def main():
-    first = json.loads(sys.stdin.readline())
-    for name in first["imports"]:
-        __import__(name)
-    allowed = set(first["imports"])
-    try:
-        import resource
-        for what, limit in (("RLIMIT_CPU", first["cpu_s"]), ("RLIMIT_AS", first["memory"]), ("RLIMIT_FSIZE", 0),
-                            ("RLIMIT_NOFILE", 3), ("RLIMIT_NPROC", 0), ("RLIMIT_CORE", 0)):
-            if hasattr(resource, what):
-                try:
-                    resource.setrlimit(getattr(resource, what), (limit, limit))
-                except (ValueError, OSError):
-                    pass
-    except ImportError:
-        pass
-    real = builtins.__import__
-    def limited(name, globals=None, locals=None, fromlist=(), level=0):
-        if level or name not in allowed:
-            raise ImportError(name)
-        return real(name, globals, locals, fromlist, level)
-    away = {"open", "exec", "eval", "compile", "input", "breakpoint", "globals", "locals", "vars", "getattr",
-            "setattr", "delattr", "type", "object", "memoryview", "help", "exit", "quit", "print"}
-    safe = {name: value for name, value in vars(builtins).items() if name not in away and name[0] != "_"}
-    safe |= {"__import__": limited, "__build_class__": builtins.__build_class__}
-    space = {"__builtins__": safe, "__name__": "policy"}
-    answer = lambda data: (sys.stdout.write(json.dumps(data) + "\n"), sys.stdout.flush())
-    broken = None
-    try:
-        exec(compile(first["source"], "policy", "exec"), space)
-    except Exception as error:
-        broken = f"{type(error).__name__}: {error}"
-    memory, rng = {}, random.Random(0)
-    for line in sys.stdin:
-        message = json.loads(line)
-        if "seed" in message:
-            memory, rng = {}, random.Random(message["seed"])
-            continue
-        if broken:
-            answer({"error": broken[:200]})
-            continue
-        try:
-            answer(dict(space["move"](message["view"], memory, rng)))
-        except Exception as error:
-            answer({"error": f"{type(error).__name__}: {error}"[:200]})
-
-main()
-"""

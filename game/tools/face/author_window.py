@@ -31,6 +31,9 @@ HEAD = 360
 IDLE_S = 0.25
 FOCUS_FRAMES = 6
 """ImGui gives a text field the keys some frames after it was asked to; what is typed meanwhile waits this long."""
+COMMAND_FRAMES = 2
+"""ImGui takes in what is typed in a frame before it carries out a Ctrl key of the same one: what follows waits."""
+_COMMAND = pygame.KMOD_CTRL | pygame.KMOD_META
 _ARROWS = {pygame.K_LEFT: (-1, 0), pygame.K_RIGHT: (1, 0), pygame.K_UP: (0, 1), pygame.K_DOWN: (0, -1)}
 _LOCKS = {pygame.K_e: "eyes", pygame.K_b: "eyebrows", pygame.K_m: "mouth", pygame.K_s: "skin"}
 _RANKS = "1234567890-="
@@ -75,7 +78,7 @@ class AuthorWindow:
 
     def _key(self, event: pygame.event.Event) -> None:
         author = self.author
-        if event.mod & (pygame.KMOD_CTRL | pygame.KMOD_META):
+        if event.mod & _COMMAND:
             shift = bool(event.mod & pygame.KMOD_SHIFT)
             if event.key == pygame.K_y or (event.key == pygame.K_z and shift):
                 author.redo()
@@ -307,7 +310,7 @@ class AuthorWindow:
         pygame.key.start_text_input()
         pygame.key.set_repeat(350, 40)
         before = time.perf_counter()
-        busy = 3
+        busy, hold = 3, 0
         waiting: list[pygame.event.Event] = []
         while self.running:
             waiting += pygame.event.get()
@@ -316,8 +319,12 @@ class AuthorWindow:
             # ImGui needs a few frames to settle after every event: hover, focus, fading.
             busy = 4 if waiting else busy - 1
             self._focus_frames = 0 if self._backend.typing else max(self._focus_frames - 1, 0)
-            while waiting and not self._focus_frames:
-                self.handle(waiting.pop(0))
+            hold = max(hold - 1, 0)
+            while waiting and not self._focus_frames and not hold:
+                event = waiting.pop(0)
+                self.handle(event)
+                if event.type == pygame.KEYDOWN and event.mod & _COMMAND:
+                    hold = COMMAND_FRAMES
             now = time.perf_counter()
             if self.draw(now - before):
                 busy = max(busy, 2)
