@@ -122,7 +122,7 @@ def _name(planner: Planner, slot: int) -> str:
 def _blockers(planner: Planner, factors: Factors, at: int, slot: int) -> str:
     place = slot - at * planner.tables.width
     above = [int(factors.chosen[0, upper]) for upper in range(at)]
-    return " and ".join(_name(planner, u) for u in above if planner.tables.blocks[u, at, place] == 0.0)
+    return " and ".join(_name(planner, u) for u in above if planner.tables.blocks[at][u, place] == 0.0)
 
 
 def _reason(

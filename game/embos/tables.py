@@ -30,8 +30,8 @@ class PlannerTables:
     """L layers of M slots each (slot = l·M + place in the layer; P = L·M slots), some of them empty.
 
     unit: (P,) index into library.units, −1 where empty. real: (P,) bool, a unit that is not rest. rest: (P,) bool.
-    follow: (P + 1, M) ω_c from a slot to its layer's slots; row P is "nothing ran yet". blocks: (P + 1, L, M) ω_l
-    of every slot below a running slot. intensity, exists: (P, 7); *_t: transposed. timing_s:
+    follow: (P + 1, M) ω_c from a slot to its layer's slots; row P is "nothing ran yet". blocks: by layer (P + 1, M) ω_l
+    of its slots below a running slot. intensity, exists: (P, 7); *_t: transposed. timing_s:
     (P, 3, 7) L_d, L_w and seconds from start to stroke. sigma: (P, 1) of the random factors' logarithm.
     constant_state: (P,) φ_state of rest slots, 0 elsewhere, −1 in empty ones. gesture_slots: (G,) consecutive
     slots of the gestures proper, gestures: the same as a slice. count: (L, 1) units that take part in the ranking;
@@ -46,7 +46,7 @@ class PlannerTables:
     real: NDArray[np.bool_]
     rest: NDArray[np.bool_]
     follow: Floats
-    blocks: Floats
+    blocks: tuple[Floats, ...]
     intensity: Floats
     exists: Floats
     intensity_t: Floats
@@ -169,7 +169,7 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         real=real,
         rest=rest,
         follow=follow,
-        blocks=blocks.reshape(slots + 1, layers, width),
+        blocks=tuple(blocks[:, at * width : (at + 1) * width].copy() for at in range(layers)),
         intensity=intensity,
         exists=exists,
         intensity_t=np.ascontiguousarray(intensity.T),
@@ -192,7 +192,7 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         initial=initial,
         presence=config.presence,
     )
-    for value in vars(tables).values():
+    for value in (*vars(tables).values(), *tables.blocks):
         if isinstance(value, np.ndarray):
             value.setflags(write=False)
     return tables

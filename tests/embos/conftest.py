@@ -92,7 +92,7 @@ def stage_time(library: UnitLibrary, config: PlannerConfig, minutes: float, seed
     on = np.zeros((7, len(library)))
     ticks = int(minutes * 60 / dt_s)
     for tick in range(ticks):
-        state, decisions = planner.advance(state, PlannerSignal(emotion, words, tick * dt_s), dt_s)
+        state, decisions = planner.advance(state, PlannerSignal(emotion, words, tick * dt_s), dt_s, spend=True)
         on[np.arange(7)[:, None], decisions.unit] += 1
     return on / ticks
 

@@ -76,11 +76,47 @@ def test_waiting_for_events_gives_what_judging_every_tick_gives(made_up: Callabl
     planner = Planner(library)
     lazy = eager = planner.start(6, 2)
     for signal in wander(6, library, 400):
-        eager = replace(eager, next_s=np.full(6, -np.inf), soonest_s=-np.inf)
+        eager = replace(eager, next_s=np.full(6, -np.inf), soonest_s=-np.inf, calm=np.zeros(6, dtype=bool))
         lazy, a = planner.advance(lazy, signal)
         eager, b = planner.advance(eager, signal)
         for name in DECIDED:
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+
+
+def test_clocks_of_their_own_and_a_spent_state_change_nothing(made_up: Callable[..., Any]) -> None:
+    library = made_up(4, with_parts=True).library
+    planner, n, late = Planner(library), 5, 37  # the last two characters are 37 ticks behind the others
+    signals = wander(n, library, 300)
+    state, together = planner.start(n, 6), []
+    for signal in signals:
+        state, decisions = planner.advance(state, signal)
+        together.append(decisions)
+    behind, rows = np.array([0, 0, 0, late, late]), np.arange(n)
+    state = planner.start(n, 6).copied()
+    for tick in range(300):
+        at = tick - behind
+        due = [
+            i
+            for i in rows[at >= 0].tolist()
+            if tick == behind[i]
+            or np.abs(signals[at[i]].emotion[i] - state.emotion[i]).max() > planner.config.tolerance
+            or state.next_s[i] < planner.moment(at[i] * DT, DT)
+            or (signals[at[i]].words[i] != signals[at[i] - 1].words[i]).any()
+        ]
+        if due:
+            own = PlannerSignal(
+                np.array([signals[at[i]].emotion[i] for i in due]),
+                np.array([signals[at[i]].words[i] for i in due]),
+                np.array([at[i] * DT for i in due]),
+            )
+            before = state
+            state = planner.judge(state, np.array(due), own, DT, spend=True)
+            assert state.wait_s is before.wait_s
+        for i in rows[at >= 0]:
+            wanted, seen = together[at[i]], state.decisions
+            np.testing.assert_array_equal(seen.unit[i], wanted.unit[i])
+            np.testing.assert_array_equal(seen.numbers[i], wanted.numbers[i])
+            np.testing.assert_array_equal(seen.started[i] & (i in due), wanted.started[i])
 
 
 def test_a_state_is_never_changed_and_can_be_resumed(made_up: Callable[..., Any]) -> None:
