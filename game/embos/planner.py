@@ -215,7 +215,8 @@ class Planner:
         count, layers, width = len(rows), len(t.layers), t.width
         late = np.asarray(now)[..., None]
         # take is the quicker of two ways to gather rows.
-        running, wait_s, marks_s = (array.take(rows, axis=0) for array in (state.running, state.wait_s, state.marks_s))
+        running, wait_s = state.running.take(rows, axis=0), state.wait_s.take(rows, axis=0)
+        marks_s = state.marks_s.take(rows, axis=0)
         ahead = marks_s >= late[..., None]
         within, held = ahead[..., 0], ahead[..., 1]
         waits = wait_s >= late
