@@ -45,7 +45,7 @@ from game.app.units_reload import UnitsWatch, watched_units
 from game.app.window import Window
 from game.app.world import World
 from game.core.errors import BadInput, MissingPart
-from game.render import Device, Level, level_named, pick_level
+from game.render import Device, Level, LostContext, level_named, pick_level
 
 __all__ = ["Window", "add_arguments", "need_display", "open_session", "play_until_closed", "run"]
 
@@ -131,7 +131,7 @@ def play_until_closed(window: Window, recorder: Recorder | None, loop: Callable[
     (a driver that was reset, a display that went away)."""
     try:
         loop()
-    except (moderngl.Error, pygame.error) as error:
+    except (moderngl.Error, pygame.error, LostContext) as error:
         raise MissingPart(f"the picture was lost ({error}); the game was saved, start it again to go on") from None
     finally:
         _keep(window, recorder)

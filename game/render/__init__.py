@@ -4,7 +4,7 @@ from game.render.assets import encode_picture, load_character, load_picture, loa
 from game.render.camera import CLOSEUP, HERO, Camera
 from game.render.crowd import CrowdLook, CrowdMesh, CrowdView, dressed, load_crowd_mesh
 from game.render.daylight import DESIGN_SHARE
-from game.render.device import Device
+from game.render.device import Device, LostContext
 from game.render.frame_times import PASSES
 from game.render.hud import Colour, Hud, rgba
 from game.render.item_drawing import Card, ItemView, cut_item, own_triangles
@@ -36,6 +36,7 @@ __all__ = [
     "Hud",
     "ItemView",
     "Level",
+    "LostContext",
     "MissingFont",
     "Relief",
     "Renderer",

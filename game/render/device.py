@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from game.core.errors import MissingPart
 from game.render.shader_source import ShaderError, explain_log, load_stage
 
-__all__ = ["PREMULTIPLIED", "Device", "Owner", "Releasable", "layout", "set_uniforms"]
+__all__ = ["PREMULTIPLIED", "Device", "LostContext", "Owner", "Releasable", "layout", "set_uniforms"]
 
 PREMULTIPLIED = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)  # the blend function of everything translucent
 
@@ -42,6 +42,10 @@ class Owner:
             self._owned.pop().release()
 
 
+class LostContext(MissingPart):
+    """The GL context is gone: a driver that was reset, a display that went away."""
+
+
 class Device:
     """A GL 3.3+ context and where its pictures go. All sizes are device pixels."""
 
@@ -59,6 +63,7 @@ class Device:
         # a surface does not have, and the bound one must not be released.
         self.nowhere = context.framebuffer([pixel])
         self._pixel = pixel
+        self._pulse = context.buffer(b"here")
 
     @classmethod
     def headless(cls, width: int, height: int) -> Device:
@@ -111,6 +116,16 @@ class Device:
             ) from error
         return cls(context, pygame.display.get_window_size(), windowed=True)
 
+    def ensure_alive(self) -> None:
+        """Raises LostContext where the context is gone. GL itself would not tell: without a context its calls do
+        nothing, report no error, and what is read back is whatever lay in memory."""
+        try:
+            alive = self._pulse.read() == b"here"
+        except moderngl.Error:
+            alive = False
+        if not alive:
+            raise LostContext("the graphics context was lost; start the program again")
+
     def resize(self, width: int, height: int) -> None:
         """Tell the device that its window, or the wanted picture, has another size."""
         self.size = (max(1, width), max(1, height))
@@ -158,6 +173,7 @@ class Device:
     def release(self) -> None:
         self.nowhere.release()
         self._pixel.release()
+        self._pulse.release()
         self.context.release()
 
 

@@ -175,6 +175,7 @@ class Renderer(Owner):
 
     def draw(self, view: FrameView) -> None:
         """Draw one frame at the device's size, into its window or, without one, to be read back."""
+        self.device.ensure_alive()
         size = self.device.size
         self.times.next_frame()
         if self._canvas is None or self._canvas.targets.full != size:
@@ -184,6 +185,7 @@ class Renderer(Owner):
 
     def snapshot(self, view: FrameView, size: tuple[int, int]) -> NDArray[np.uint8]:
         """Draw one picture of any size beside the running frames: (height, width, 3) uint8, first row at the top."""
+        self.device.ensure_alive()
         canvas = self._make_canvas(size)
         self._light = None
         try:
@@ -197,6 +199,7 @@ class Renderer(Owner):
         """The last frame as (height, width, 3) uint8, first row at the top."""
         if self._shown is None:
             raise RuntimeError("nothing has been drawn yet")
+        self.device.ensure_alive()
         pixels = _pixels(self._shown, self.device.size)
         if self.device.windowed:
             _ = self.device.context.error  # moderngl asks the window for an attachment, which GL minds but obeys

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import builtins
+import ctypes
 import errno
 import functools
 import math
 import os
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -30,7 +32,7 @@ from game.app.talk import Choice
 from game.app.window import Window
 from game.app.world import TICK_S, Intent
 from game.core.errors import BadInput, MissingPart
-from game.render import Device, level_named
+from game.render import Device, LostContext, level_named
 
 SIZE = (320, 180)
 
@@ -186,6 +188,51 @@ def test_a_lost_picture_ends_in_one_line_with_everything_kept(window: Window, us
     with pytest.raises(MissingPart, match=r"context lost.*saved") as caught:
         play_until_closed(window, recorder, lost)
     assert "\n" not in str(caught.value)
+    assert kept(session, user).talk is not None
+    assert read_recording(tmp_path / "play.jsonl").whole
+
+
+def destroy_context() -> None:
+    """Take the present EGL context away, as the end of a driver or of a display does."""
+    egl = ctypes.CDLL("libEGL.so.1")
+    for name in ("eglGetCurrentDisplay", "eglGetCurrentContext"):
+        getattr(egl, name).restype = ctypes.c_void_p
+    egl.eglMakeCurrent.argtypes, egl.eglDestroyContext.argtypes = [ctypes.c_void_p] * 4, [ctypes.c_void_p] * 2
+    display, context = egl.eglGetCurrentDisplay(), egl.eglGetCurrentContext()
+    assert context
+    assert egl.eglMakeCurrent(display, None, None, None)
+    assert egl.eglDestroyContext(display, context)
+
+
+@pytest.mark.gl
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="takes the context away through EGL")
+def test_a_context_that_is_really_destroyed_ends_in_one_line_with_everything_kept(
+    device: Device, user: Path, tmp_path: Path
+) -> None:
+    window = Window(opened(), Device.headless(*SIZE), level=level_named("low"))
+    session = window.session
+    session.taken_up = True
+    recorder = record_session(session, tmp_path / "play.jsonl", stall="flea")
+    begin(window)
+    frames: list[int] = []
+
+    def loop() -> None:
+        while len(frames) < 9:
+            window.advance(TICK_S)
+            window.draw()
+            frames.append(session.ticks)
+            if len(frames) == 3:
+                destroy_context()
+
+    try:
+        with pytest.raises(MissingPart, match=r"context was lost.*saved") as caught:
+            play_until_closed(window, recorder, loop)
+        with pytest.raises(LostContext):  # nor is a picture read that was never drawn
+            window.renderer.read_pixels()
+    finally:
+        device.context.__enter__()  # the other tests' context is the present one again
+    assert "\n" not in str(caught.value)
+    assert len(frames) == 3
     assert kept(session, user).talk is not None
     assert read_recording(tmp_path / "play.jsonl").whole
 
