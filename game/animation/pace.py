@@ -61,28 +61,38 @@ def unknown(shape: tuple[int, int]) -> Stretch:
 
 
 def next_stretch(
-    stretch: Stretch, due: Bools, timing: Floats, lap_frames: Floats, elapsed_s: Floats, lap: Floats
+    stretch: Stretch, due: Bools, active: Bools, timing: Floats, lap_frames: Floats, elapsed_s: Floats, lap: Floats
 ) -> tuple[Stretch, Floats, Bools]:
-    """Where due (n, L) the next stretch begins. lap_frames: (n, L, 7) as in Playback; elapsed_s: (n, L); lap: (n, L)
-    repeats made so far. -> stretch, repeats, and where a unit has come to its end."""
-    at, rate, laps, held = _played(timing, elapsed_s)
-    last = timing[LAST]
-    ended = due & (at >= last)
-    at = np.minimum(at, last)
-    wrapped = at[:, :, None] - np.fmod(at[:, :, None], lap_frames)
-    until = np.where(held, -np.inf, _until(timing, elapsed_s, at, rate, laps, (wrapped + lap_frames).min(axis=-1)))
+    """Where due (n, L) the next stretch begins. active: (n, L) what runs; lap_frames: (n, L, 7) as in Playback;
+    elapsed_s: (n, L); lap: (n, L) repeats made so far. -> stretch, repeats, and where a unit has come to its end."""
+    who = np.nonzero(due & active)
+    of_who, elapsed_of_who, loops = timing[:, who[0], who[1]], elapsed_s[who], lap_frames[who]
+    at, rate, laps, held = _played(of_who, elapsed_of_who)
+    ends = at >= of_who[LAST]
+    at = np.minimum(at, of_who[LAST])
+    wrapped = at[:, None] - np.fmod(at[:, None], loops)
+    until = _until(of_who, elapsed_of_who, at, rate, laps, (wrapped + loops).min(axis=-1))
+    until = np.where(held, -np.inf, until)
+    ended = np.zeros_like(due)
+    ended[who] = ends
     going = Stretch(
-        rate=np.where(due, rate, stretch.rate),
-        base=np.where(due, at - elapsed_s * rate, stretch.base),
-        wrapped=np.where(due[:, :, None], wrapped, stretch.wrapped),
+        rate=_put(stretch.rate, who, rate),
+        base=_put(stretch.base, who, at - elapsed_of_who * rate),
+        wrapped=_put(stretch.wrapped, who, wrapped),
         # What does not run has nothing to wait for.
-        until_s=np.where(due & ~ended, until, np.where(elapsed_s >= stretch.until_s, np.inf, stretch.until_s)),
+        until_s=_put(np.where(due, np.float32(np.inf), stretch.until_s), who, np.where(ends, np.inf, until)),
     )
-    return going, np.where(due, laps, lap), ended
+    return going, _put(lap, who, laps), ended
+
+
+def _put(old: Floats, who: tuple[NDArray[np.intp], ...], new: Floats) -> Floats:
+    made = old.copy()
+    made[who] = new
+    return made
 
 
 def _played(timing: Floats, elapsed_s: Floats) -> tuple[Floats, Floats, Floats, Bools]:
-    """Frame (n, L) units have come to, frames per second there, repeats made, and whether they are being held."""
+    """Frame (m,) units have come to, frames per second there, repeats made, and whether they are being held."""
     before, lead, after, hold_first, hold_length, held, loop_first, loop_frames, times, _ = timing
     past = elapsed_s - before
     at = np.minimum(elapsed_s, before) * lead
@@ -99,7 +109,7 @@ def _played(timing: Floats, elapsed_s: Floats) -> tuple[Floats, Floats, Floats, 
 
 
 def _until(timing: Floats, elapsed_s: Floats, at: Floats, rate: Floats, lap: Floats, looped: Floats) -> Floats:
-    """(n, L) when the even pace of units that are not held ends; looped: the frame at which a loop is over."""
+    """(m,) when the even pace of units that are not held ends; looped: the frame at which a loop is over."""
     before, _, _, hold_first, _, held, loop_first, loop_frames, times, last = timing
     ahead = np.where((held > 0.0) & (at < hold_first), hold_first, last)
     ahead = np.where(lap < times, np.minimum(ahead, loop_first + loop_frames), ahead)

@@ -29,9 +29,7 @@ DRIFT_HALF_LIFE_S = 0.9
 """How fast a held posture follows the emotion through its variants."""
 LEAST_WEIGHT = 0.02
 """Variants below this share are left out; it is subtracted first, so nothing jumps when one comes in."""
-PRUNE_FROM = 8
-"""From this many characters on it pays to gather only the variants in use."""
-PIECE = 32
+PIECE = 128
 """Characters whose rows are gathered at a time: what is mixed next is still in the cache."""
 
 _THIS_AND_NEXT = np.array([[0], [1]])
@@ -251,7 +249,7 @@ def advance_playback(
     active, running, lap, jumped = state.active, state.running, state.lap, None
     if calm_s <= 0.0:
         due = elapsed >= stretch.until_s
-        stretch, lap, ended = next_stretch(stretch, due & active, state.timing, state.lap_frames, elapsed, lap)
+        stretch, lap, ended = next_stretch(stretch, due, active, state.timing, state.lap_frames, elapsed, lap)
         jumped = ended | (lap != state.lap)
         if np.count_nonzero(ended):
             active = active & ~ended
@@ -304,20 +302,9 @@ def _mixed(bank: MotionBank, state: Playback, mix: Floats, posture_layer: int) -
         if running < n:
             who = np.flatnonzero(state.active[:, layer])
             frames, shares = frames.take(who, axis=0), shares.take(who, axis=0)
-        frames, shares = frames.reshape(running, -1), shares.reshape(running, -1)
-        if n >= PRUNE_FROM:
-            frames, shares = _in_use(frames, shares)
-        shares = shares[:, None]
+        frames, shares = frames.reshape(running, -1), shares.reshape(running, 1, -1)
         values.append((layer, who, _sums(bank.rows, frames, shares)))
     return values
-
-
-def _in_use(frames: Ints, shares: Floats) -> tuple[Ints, Floats]:
-    """Only as many columns of (m, 14) as the most of them who have shares use."""
-    used = shares != 0.0
-    most = int(np.count_nonzero(used, axis=1).max())
-    first = np.argsort(~used, axis=1, kind="stable")[:, :most]
-    return np.take_along_axis(frames, first, axis=1), np.take_along_axis(shares, first, axis=1)
 
 
 def _sums(rows: Floats, frames: Ints, shares: Floats) -> Floats:

@@ -107,6 +107,21 @@ def test_transitions_do_not_pop(library: UnitLibrary, performer: Performer) -> N
     assert np.linalg.norm(np.diff(wrists, axis=0), axis=-1).max() / DT < 3.0
 
 
+def test_taking_up_another_repertoire_goes_on_from_where_the_body_is_and_as_fast(
+    library: UnitLibrary, performer: Performer
+) -> None:
+    script = Script(library, *BUSY)
+    for moment in (73, 76, 97):  # in the middle of a move
+        state, poses = performer.start(1, seed=5), []
+        for tick in range(moment + 30):
+            if tick == moment:
+                state = Performer(library, collide=False).adopt(state, performer)
+            state, pose = performer.advance(state, script.at(tick), script.signal(), DT)
+            poses.append(pose)
+        own = max(largest_joint_acceleration(take.rotation) for take in library.clips.values())
+        assert largest_joint_acceleration(rotations(poses)[moment - 4 : moment + 6]) < 1.7 * own
+
+
 def test_a_cut_without_transition_would_be_seen_by_the_measure(library: UnitLibrary) -> None:
     take = library.clips["joy"].rotation
     cut = np.concatenate([take[:30], take[340:370]])
