@@ -7,13 +7,23 @@ from dataclasses import replace
 
 from game.core.errors import BadInput
 from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Warp, timer_at
-from game.story.chance import pick_weighted, uniform
-from game.story.draw import draw_choices, fresh_of
+from game.story.chance import Lots, uniform
+from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
-from game.story.model import BACK, HOME, Branch, ChoiceDef, EffectDef, LineDef, NodeDef, Script
-from game.story.prepared import FIXED_NAMES, Offered, ReadyLine, Table, prepared
-from game.story.state import StoryState
+from game.story.model import BACK, HOME, Script
+from game.story.prepared import (
+    Pair,
+    ReadyChoice,
+    ReadyEffect,
+    ReadyGroup,
+    ReadyLine,
+    ReadyNode,
+    ReadySay,
+    Way,
+    prepared,
+)
+from game.story.state import Past, StoryState
 from game.story.text import Text
 from game.story.vocabulary import OUTCOMES, Value, environment
 
@@ -23,8 +33,6 @@ __all__ = ["advance", "resume"]
 _MAX_STEPS = 500
 _MAX_RETURNS = 16
 _DRAW_STREAM = 0x9E3779B9
-_KEPT_NAMES = FIXED_NAMES | {"offer"}
-_NOTHING: Table = ((), (), ())
 
 
 def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -45,7 +53,7 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     elif isinstance(event, Warp):
         if event.node not in script.nodes:
             raise BadInput("node", expected=f"one of {script.stall}", seen=event.node)
-        run.returns.clear()
+        run.returns = ()
         run.walk(event.node, None)
     elif isinstance(event, Outcome):
         run.walk(state.node, _known(event.kind, script))
@@ -63,13 +71,13 @@ def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple
     if not state.started:
         return state, Beat("", (), (), (), None)
     run = _Run(script, state, env)
-    run.lines = [run.spoken(script.lines[name]) for name in state.last_lines]
-    run.node = state.node
-    usable = [(script.choices[choice], run.line_of(choice, text)) for choice, text in state.offered]
-    if state.ended is None and not any(run.usable(choice) for choice, _ in usable):
-        run.wait_at(script.nodes[state.node])
+    run.lines = [run.spoken(run.ready.line(script.lines[name])) for name in state.last_lines]
+    again = [run.ready.choice(script.choices[choice]) for choice, _ in state.offered]
+    if state.ended is None and not any(run.usable(choice) for choice in again):
+        run.wait_at(run.ready.node(state.node))
     else:
-        run.offered = tuple([(choice, line, None) for choice, line in usable])
+        texts = [text for _, text in state.offered]
+        run.lay([(choice, _wording(choice, text)) for choice, text in zip(again, texts, strict=True)])
     fresh, beat = run.result()
     return replace(fresh, last_lines=state.last_lines), beat
 
@@ -80,46 +88,48 @@ def _known(kind: str, script: Script) -> str:
     return kind
 
 
+def _wording(choice: ReadyChoice, text: str) -> ReadyLine:
+    """One of a choice's wordings by its id, the first where it has none such."""
+    lines = choice.wordings.lines
+    if len(lines) == 1:
+        return lines[0]
+    return next((line for line in lines if line.id == text), lines[0])
+
+
 class _Run:
-    """The working copy of a state during one step."""
+    """The working copy of a state during one step; as a container, everything said, chosen or visited so far."""
+
+    __slots__ = (
+        "bits", "choices", "chosen", "counter", "ended", "heard", "lines", "names", "node", "pairs", "past", "ready",
+        "returns", "said", "scope", "script", "state", "stimuli", "told", "turn", "variables", "visits",
+    )  # fmt: skip
 
     def __init__(self, script: Script, state: StoryState, env: Mapping[str, Value]) -> None:
-        self.script = script
-        self.state = state
-        self.node = state.node
-        self.counter = state.counter
-        self.turn = state.turn
-        self.ended = state.ended
-        self.returns = list(state.returns)
-        self.visits = dict(state.visits)
+        self.script, self.state = script, state
+        self.node, self.counter, self.turn, self.ended = state.node, state.counter, state.turn, state.ended
         # The state's own until something is added.
-        self.said: set[str] | frozenset[str] = state.said
-        self.chosen: set[str] | frozenset[str] = state.chosen
-        self.heard = dict(state.heard)
-        self.seen: set[str] | None = None
-        self.names: dict[str, Value] = environment(env)
-        self.names.update(state.variables)
-        self.names["item"] = state.item
-        self.names["visit"] = float(state.visit)
-        told = str(self.names["quality"]) if self.names["tells"] else "none"
+        self.returns, self.heard, self.variables = state.returns, state.heard, state.variables
+        self.visits = dict(state.visits)
+        past = self.past = Past.of(script, state)
+        self.said, self.chosen = past.said, past.chosen
+        self.bits = script.bits
+        names = self.names = environment(env)
+        names.update(state.variables)
+        names["item"], names["visit"] = state.item, float(state.visit)
+        told = str(names["quality"]) if names["tells"] else "none"
         self.told = "veiled" if told == "none" else told
         self.ready = prepared(script, state.item)
-        self.says = self.ready.told(self.told)
-        self.scope = Scope(self.names, self.visits, self.gather)
+        self.scope = Scope(names, self.visits, self)
         self.lines: list[Spoken] = []
         self.stimuli: list[Stimulus] = []
-        self.offered: tuple[Offered, ...] = ()
-        self.table: Table | None = None
+        self.pairs: tuple[Pair, ...] = ()
+        self.choices: tuple[Choice, ...] = ()
 
-    def gather(self) -> set[str]:
-        """Everything said, chosen or visited so far, from now on kept up to date by ``note``."""
-        self.seen = {*self.state.earlier, *self.said, *self.chosen, *self.visits}
-        return self.seen
-
-    def note(self, seen: str) -> None:
-        """Something is said, chosen or visited."""
-        if self.seen is not None:
-            self.seen.add(seen)
+    def __contains__(self, seen: object) -> bool:
+        bit = self.bits.get(seen)  # type: ignore[call-overload]
+        if bit and (self.said | self.chosen | self.past.earlier) & bit:
+            return True
+        return seen in self.visits or seen in self.state.earlier
 
     def chance(self) -> float:
         self.counter += 1
@@ -128,55 +138,59 @@ class _Run:
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
         """Take a choice: its words, effects and feelings; the node it leads to."""
-        choice = text = None
-        for name, wording in self.state.offered:
-            if name == choice_id:
-                choice, text = self.script.choices.get(name), wording
-        if choice is None or text is None or not self.usable(choice):
-            known = [name for name, _ in self.state.offered]
-            raise BadInput("choice", expected=" | ".join(known) or "none", seen=choice_id)
+        texts, known = dict(self.state.offered), self.script.choices.get(choice_id)
+        choice = None if known is None or choice_id not in texts else self.ready.choice(known)
+        if choice is None or not self.usable(choice):
+            raise BadInput("choice", expected=" | ".join(texts) or "none", seen=choice_id)
         if not choice.silent:
-            self.say_line(self.line_of(choice_id, text))
+            self.say(_wording(choice, texts[choice_id]))
         if choice.act != "offer" and self.names["offer_result"] != "none":
-            self.say_offer()
-        if choice_id not in self.chosen:
-            self.chosen = {*self.chosen, choice_id}
-            self.note(choice_id)
-        # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
-        self.apply(choice.effects, {}, choice_id)
-        return self.branch(choice.to)
-
-    def say_offer(self) -> None:
-        """A line that carries an offer is followed by the words of an offer."""
-        for choice in self.script.standing:
-            if choice.act == "offer":
-                self.say([(line, None) for line in choice.texts if self.holds(line)], "weighted")
-                return
+            # A line that carries an offer is followed by the words of an offer.
+            offer = self.ready.offer(self.told)
+            if offer is not None:
+                self.say_one(offer)
+        self.chosen |= choice.bit
+        if choice.effects:
+            # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
+            self.apply(choice.effects)
+        return self.way(choice.ways)
 
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
-        nodes = self.script.nodes
+        ready, visits = self.ready, self.visits
+        nodes = ready.nodes
         for _ in range(_MAX_STEPS):
             node = nodes.get(target)
             if node is None:
                 target = self.resolved(target)
-                node = nodes[target]
-            outcome_node = self.script.outcomes.get(pending) if pending else None
-            ending = pending is not None and OUTCOMES[pending]
-            if pending is not None and (node.waits or (node.end is not None and ending)):
-                # The market's answer comes after the reaction and before the talk goes on.
-                if ending:
-                    closing, self.returns = pending, []
-                elif outcome_node is not None:
-                    self.push(target)
-                pending = None
-                if outcome_node is not None:
-                    target = outcome_node
-                    continue
+                node = ready.node(target)
+            if pending is not None:
+                ending = OUTCOMES[pending]
+                if node.waits or (ending and node.end is not None):
+                    # The market's answer comes after the reaction and before the talk goes on.
+                    outcome_node = self.script.outcomes.get(pending)
+                    if ending:
+                        closing, self.returns = pending, ()
+                    elif outcome_node is not None:
+                        self.push(target)
+                    pending = None
+                    if outcome_node is not None:
+                        target = outcome_node
+                        continue
             if closing is not None and node.waits:
                 break
-            self.enter(node)
+            self.node = target
+            visits[target] = visits.get(target, 0) + 1
+            if node.effects:
+                self.apply(node.effects)
+            if node.stimulus is not None:
+                self.stimuli.append(node.stimulus)
+            says = node.says.get(self.told)
+            if says is None:
+                says = ready.says(node, self.told)
+            if says:
+                self.speak(says)
             if node.end is not None:
                 self.ended = node.end
                 return
@@ -184,17 +198,16 @@ class _Run:
                 if self.wait_at(node) or target == self.script.home:
                     return
                 target = HOME
-                continue
-            if node.call is None:
-                target = self.branch(node.to)
+            elif node.call is None:
+                target = self.way(node.ways)
             else:
-                self.push(f"after:{node.id}")
+                self.push(node.after)
                 target = node.call
         if closing is not None:
             self.ended = closing
         else:
             self.node = self.script.home
-            self.wait_at(self.script.nodes[self.node])
+            self.wait_at(ready.node(self.node))
 
     def resolved(self, target: str) -> str:
         """A node's own name; ``back`` and ``home`` looked up."""
@@ -202,88 +215,70 @@ class _Run:
             return target
         while target == BACK or target.startswith("after:"):
             if target == BACK:
-                target = self.returns.pop() if self.returns else HOME
+                target = self.returns[-1] if self.returns else HOME
+                self.returns = self.returns[:-1]
             else:
-                target = self.branch(self.script.nodes[target.removeprefix("after:")].to)
+                target = self.way(self.ready.node(target.removeprefix("after:")).ways)
         return self.script.home if target == HOME else target
 
     def push(self, target: str) -> None:
-        self.returns.append(target)
-        del self.returns[:-_MAX_RETURNS]
+        self.returns = (*self.returns, target)[-_MAX_RETURNS:]
 
-    def branch(self, branches: tuple[Branch, ...]) -> str:
-        for branch in branches:
-            if branch.condition is None or branch.condition.evaluate(self.scope):
-                return branch.target
+    def way(self, ways: Sequence[Way]) -> str:
+        for test, target in ways:
+            if test is None or test(self.scope):
+                return target
         return HOME
 
-    def enter(self, node: NodeDef) -> None:
-        name = self.node = node.id
-        self.visits[name] = self.visits.get(name, 0) + 1
-        self.note(name)
-        if node.effects or node.feel:
-            self.apply(node.effects, node.feel, name)
-        says = self.says.get(name)
-        if says is None:
-            says = self.ready.says(node, self.told)
-        scope = self.scope
-        for test, order, lines in says:
-            if test is not None and not test(scope):
-                continue
-            if len(lines) > 1:
-                self.say(lines, order)
-                continue
-            line, own = lines[0]
-            if (line.again or line.id not in self.said) and (own is None or own(scope)):
-                self.say_line(line)
-
-    def apply(self, effects: tuple[EffectDef, ...], feel: Mapping[str, float], source: str) -> None:
-        for effect in effects:
-            self.names[effect.name] = effect.value.evaluate(self.scope)
-        if feel:
-            self.stimuli.append(Stimulus(feel, source))
+    def apply(self, effects: Sequence[ReadyEffect]) -> None:
+        names = self.names
+        for name, value in effects:
+            names[name] = value(self.scope)
+        self.variables = {name: names[name] for name in self.script.variables}
 
     # --- speaking --------------------------------------------------------------------------------------------
-    def say(self, lines: Sequence[ReadyLine], order: str) -> None:
+    def speak(self, says: Sequence[ReadySay]) -> None:
+        """What a node says."""
+        for test, group in says:
+            if test is None or test(self.scope):
+                self.say_one(group)
+
+    def say_one(self, group: ReadyGroup) -> None:
         """One line of those that can be said now."""
-        said, scope = self.said, self.scope
-        fresh = [line for line, test in lines if (line.again or line.id not in said) and (test is None or test(scope))]
-        if len(fresh) > 1:
-            fresh = fresh_of(fresh, order, self.state.earlier, self.heard)
-        if fresh:
-            self.say_line(fresh[0] if len(fresh) == 1 else self.drawn(fresh))
+        line = group.only
+        if line is not None:
+            if (line.again or not self.said & line.bit) and (line.test is None or line.test(self.scope)):
+                self.say(line)
+        else:
+            lots = group.left(self.said, self.past.earlier).usable(self.scope)
+            if group.recalls:
+                lots = group.least_heard(lots, self.heard)
+            if lots.items:
+                self.say(lots.only or lots.draw(self.chance()))
 
-    def drawn(self, lines: Sequence[LineDef]) -> LineDef:
-        """One of several by their weights."""
-        return lines[pick_weighted([line.weight for line in lines], self.chance())]
-
-    def say_line(self, line: LineDef) -> None:
-        name = line.id
-        if name not in self.said:
-            if isinstance(self.said, frozenset):
-                self.said = set(self.said)
-            self.said.add(name)
-            self.note(name)
+    def say(self, line: ReadyLine) -> None:
+        if not self.said & line.bit:
+            self.said |= line.bit
         elif not line.again:
             return
         if line.again:
-            self.heard[name] = self.heard.get(name, 0) + 1
-        known = self.ready.spoken.get(name)
-        self.lines.append(self.spoken(line) if known is None else known)
-        if line.feel:
-            self.stimuli.append(Stimulus(line.feel, name))
+            self.heard = {**self.heard, line.id: self.heard.get(line.id, 0) + 1}
+        self.lines.append(self.spoken(line))
+        if line.stimulus is not None:
+            self.stimuli.append(line.stimulus)
 
-    def holds(self, line: LineDef) -> bool:
+    def holds(self, line: ReadyLine) -> bool:
         """Whether a line fits how the player's line landed, and its condition holds."""
-        return line.when in (None, self.told) and (line.condition is None or bool(line.condition.evaluate(self.scope)))
+        return line.when in (None, self.told) and (line.test is None or bool(line.test(self.scope)))
 
-    def spoken(self, line: LineDef) -> Spoken:
-        known = self.ready.spoken.get(line.id)
+    def spoken(self, line: ReadyLine) -> Spoken:
+        key = tuple([self.names.get(name) for name in line.asks]) if line.asks else ()
+        known = line.spoken.get(key)
         if known is None:
-            text = self.filled(line.text)
-            known = Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
-            if line.text.names <= FIXED_NAMES:
-                self.ready.spoken[line.id] = known
+            given = line.line
+            text = self.filled(given.text)
+            known = Spoken(given.id, given.speaker, text.en, text.ja, given.face, given.tone, given.gesture)
+            line.spoken.keep(key, known)
         return known
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
@@ -291,110 +286,102 @@ class _Run:
         return filled(self.script, self.state.item, self.names, text, keep=keep)
 
     # --- choices ---------------------------------------------------------------------------------------------
-    def shown(self, choice: ChoiceDef) -> bool:
+    def shown(self, choice: ReadyChoice) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        once = choice.once
-        if once != "never" and choice.id in (self.chosen if once == "talk" else self.scope.seen):
+        if self.chosen & choice.used or (choice.gone and choice.id in self):
             return False
-        return choice.condition is None or bool(choice.condition.evaluate(self.scope))
+        return choice.shown is None or bool(choice.shown(self.scope))
 
-    def usable(self, choice: ChoiceDef) -> bool:
+    def usable(self, choice: ReadyChoice) -> bool:
         """Whether it may be taken as well."""
-        return self.shown(choice) and (choice.needs is None or bool(choice.needs.evaluate(self.scope)))
+        return self.shown(choice) and (choice.needs is None or bool(choice.needs(self.scope)))
 
-    def wait_at(self, node: NodeDef) -> bool:
+    def wait_at(self, node: ReadyNode) -> bool:
         """Lay the choices of a node on the table; False where none can be taken."""
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
-        self.table = self.ready.tables.get(node.id)
-        if self.table is not None:
+        if node.table is not None:
+            self.pairs, self.choices = node.table
             return True
-        drawn: list[ChoiceDef] = []
-        if node.pools:
-            groups, seed = self.ready.groups(node), self.state.seed ^ _DRAW_STREAM
-            drawn = draw_choices(groups, self.scope, self.chosen, node.draw, self.script.acts, seed, self.turn * 64)
-        offered: list[Offered] = [(choice, self.variant(choice), None) for choice in drawn]
-        here = self.laid(node.id, node.choices)
-        standing = self.laid("", self.script.standing) if node.standing else ()
-        self.offered = (*offered, *here, *standing)
-        fixed = isinstance(here, tuple) and isinstance(standing, tuple)
-        if fixed and self.offered and not node.pools:
-            seen = tuple([made for _, _, made in self.offered if made is not None])
-            pairs = tuple([(choice.id, line.id) for choice, line, _ in self.offered])
-            self.ready.tables[node.id] = self.table = (self.offered, pairs, seen)
-            return True
-        return bool(offered) or any(made is not None or self.usable(choice) for choice, _, made in self.offered)
+        drawn: Sequence[ReadyChoice] = ()
+        if node.acts:
+            seen = self.past.earlier | self.said | self.chosen
+            seed, count = self.state.seed ^ _DRAW_STREAM, node.node.draw
+            drawn = draw_choices(
+                node.acts, self.scope, self.chosen, seen, count, self.script.acts, seed, self.turn * 64
+            )
+        offered = [(choice, self.variant(choice)) for choice in drawn]
+        offered += [(choice, self.variant(choice)) for choice in node.laid if self.shown(choice)]
+        taken = self.lay(offered, usable=len(drawn))
+        if node.always:
+            node.table = (self.pairs, self.choices)
+        return taken
 
-    def laid(self, place: str, choices: Sequence[ChoiceDef]) -> Sequence[Offered]:
-        """Those of a place's choices that may be seen."""
-        fixed = self.ready.fixed(place, choices, self.made)
-        if fixed is not None:
-            return fixed
-        return [(choice, self.variant(choice), None) for choice in filter(self.shown, choices)]
+    def lay(self, offered: Sequence[tuple[ReadyChoice, ReadyLine]], *, usable: int = 0) -> bool:
+        """Put choices on the table; ``usable``: so many of the first are known to be. Whether any can be taken."""
+        options = []
+        for at, (choice, line) in enumerate(offered):
+            if at < usable or self.usable(choice):
+                options.append(self.option(choice, line))
+            else:
+                options.append(self.greyed(choice, line))
+        self.pairs = tuple([line.pair for _, line in offered])
+        self.choices = tuple(options)
+        return usable > 0 or any(option.available for option in options)
 
-    def variant(self, choice: ChoiceDef) -> LineDef:
+    def variant(self, choice: ReadyChoice) -> ReadyLine:
         """A wording not yet used in this talk, by chance; the first where all were."""
-        if len(choice.texts) == 1:
-            return choice.texts[0]
-        said, plain = self.said, self.ready.wordings(choice)
-        if plain is None:
-            fresh = [line for line in choice.texts if line.id not in said and self.holds(line)]
+        group = choice.wordings
+        if group.only is not None:
+            return group.only
+        if choice.fits:
+            lots = group.left(self.said, 0).usable(self.scope)
         else:
-            fresh = [line for line in plain if line.id not in said]
-        if len(fresh) < 2:
-            return fresh[0] if fresh else choice.texts[0]
-        return self.drawn(fresh)
+            lots = Lots([line for line in group.lines if not self.said & line.bit and self.holds(line)])
+        return lots.only or (lots.draw(self.chance()) if lots.items else group.lines[0])
 
-    def line_of(self, choice_id: str, text_id: str) -> LineDef:
-        texts = self.script.choices[choice_id].texts
-        if len(texts) == 1:
-            return texts[0]
-        return next((line for line in texts if line.id == text_id), texts[0])
-
-    def made(self, choice: ChoiceDef, line: LineDef) -> Choice:
+    def option(self, choice: ReadyChoice, line: ReadyLine) -> Choice:
         """A choice that can be taken, in one of its wordings, as the player sees it."""
-        key = (choice.id, line.id)
-        known = self.ready.options.get(key)
+        key = tuple([self.names.get(name) for name in line.keeps]) if line.keeps else ()
+        known = line.option.get(key)
         if known is None:
-            text = self.filled(line.text, keep="offer")
-            known = Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.feel)
-            if line.text.names <= _KEPT_NAMES:
-                self.ready.options[key] = known
+            text = self.filled(line.line.text, keep="offer")
+            known = Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.choice.feel)
+            line.option.keep(key, known)
         return known
 
-    def _choice(self, choice: ChoiceDef, line: LineDef) -> Choice:
-        if self.usable(choice):
-            return self.made(choice, line)
-        text = self.filled(line.text, keep="offer")
-        reason = None if choice.reason is None else self.filled(choice.reason)
-        return Choice(choice.id, choice.act, text.en, text.ja, False, reason, choice.feel)
+    def greyed(self, choice: ReadyChoice, line: ReadyLine) -> Choice:
+        """A choice that can be seen and not taken, and why."""
+        text, why = self.filled(line.line.text, keep="offer"), choice.choice.reason
+        reason = None if why is None else self.filled(why)
+        return Choice(choice.id, choice.act, text.en, text.ja, False, reason, choice.choice.feel)
 
     def result(self) -> tuple[StoryState, Beat]:
         if self.ended is not None:
-            _, pairs, choices = _NOTHING
-        elif self.table is not None:
-            _, pairs, choices = self.table
-        else:
-            pairs = tuple([(choice.id, line.id) for choice, line, _ in self.offered])
-            choices = tuple(
-                [self._choice(choice, line) if made is None else made for choice, line, made in self.offered]
-            )
-        timer = timer_at(self.script.nodes[self.node].timer, choices) if self.ended is None and self.node else None
-        names = self.names
-        lines = tuple(self.lines)
-        state = self.state.moved(
-            started=True,
-            counter=self.counter,
-            turn=self.turn,
-            node=self.node,
-            ended=self.ended,
-            returns=tuple(self.returns),
-            visits=self.visits,
-            said=frozenset(self.said),
-            chosen=frozenset(self.chosen),
-            heard=self.heard,
-            variables={name: names[name] for name in self.script.variables},
-            offered=pairs,
-            last_lines=tuple([line.id for line in lines]),
+            self.pairs, self.choices = (), ()
+        timer = self.script.nodes[self.node].timer if self.ended is None and self.node else None
+        state, past = self.state, self.past
+        fresh = StoryState.stepped(
+            {
+                "stall": state.stall,
+                "item": state.item,
+                "seed": state.seed,
+                "visit": state.visit,
+                "counter": self.counter,
+                "turn": self.turn,
+                "node": self.node,
+                "started": True,
+                "ended": self.ended,
+                "returns": self.returns,
+                "visits": self.visits,
+                "heard": self.heard,
+                "earlier": state.earlier,
+                "variables": self.variables,
+                "offered": self.pairs,
+                "last_lines": tuple([line.id for line in self.lines]),
+                "past": Past(past.script, self.said, self.chosen, past.earlier, past.strange),
+            }
         )
-        return state, Beat(self.node, lines, choices, tuple(self.stimuli), self.ended, timer)
+        timed = None if timer is None else timer_at(timer, self.choices)
+        return fresh, Beat(self.node, tuple(self.lines), self.choices, tuple(self.stimuli), self.ended, timed)
+

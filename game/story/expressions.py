@@ -9,14 +9,13 @@ checked and turned into closures. Evaluation cannot fail: types are checked befo
 from __future__ import annotations
 
 import ast
-import operator
 import warnings
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Container, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from game.core.errors import BadInput, Where
 from game.formats.yaml_source import nearest
+from game.story.closures import BOUND, Closure, arithmetic, comparison, constant, joined, membership, name_of
 from game.story.vocabulary import Type, Value
 
 __all__ = ["Expression", "ExpressionError", "Names", "Scope", "compile_expression"]
@@ -24,20 +23,6 @@ __all__ = ["Expression", "ExpressionError", "Names", "Scope", "compile_expressio
 MAX_CHARS = 400
 MAX_DEPTH = 24
 MAX_PARTS = 120
-BOUND = 1e9
-
-_ARITHMETIC: Mapping[type, Callable[[float, float], float]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: lambda a, b: a / b if b else 0.0,
-}
-_ORDER: Mapping[type, Callable[[Any, Any], bool]] = {
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-}
 _LITERALS: Mapping[str, Value] = {"true": True, "false": False}
 
 
@@ -52,27 +37,12 @@ class ExpressionError(BadInput):
 
 
 class Scope:
-    """What an expression can see: values by name, visits by node, and everything said, chosen or visited.
+    """What an expression can see: values by name, visits by node, and everything said, chosen or visited."""
 
-    seen: a collection, or a function that gathers it when something asks for the first time.
-    """
+    __slots__ = ("names", "seen", "visits")
 
-    __slots__ = ("_seen", "names", "visits")
-
-    def __init__(
-        self,
-        names: Mapping[str, Value],
-        visits: Mapping[str, int],
-        seen: Collection[str] | Callable[[], set[str]],
-    ) -> None:
-        self.names, self.visits, self._seen = names, visits, seen
-
-    @property
-    def seen(self) -> Collection[str]:
-        """Ids of lines and choices, and nodes."""
-        if callable(self._seen):
-            self._seen = self._seen()
-        return self._seen
+    def __init__(self, names: Mapping[str, Value], visits: Mapping[str, int], seen: Container[str]) -> None:
+        self.names, self.visits, self.seen = names, visits, seen
 
 
 @dataclass(frozen=True)
@@ -82,9 +52,6 @@ class Names:
     types: Mapping[str, Type]
     nodes: Collection[str]
     ids: Collection[str]
-
-
-Closure = Callable[[Scope], Any]
 
 
 @dataclass(frozen=True)
@@ -131,10 +98,6 @@ def compile_expression(
         compiler.simple,
         run,
     )
-
-
-def _clamp(value: float) -> float:
-    return min(max(value, -BOUND), BOUND)
 
 
 class _Compiler:
@@ -200,12 +163,10 @@ class _Compiler:
                 inner = self.wanted(operand, "number", depth)
                 return "number", lambda scope: -inner(scope)
             case ast.BoolOp(op=op, values=values):
-                return "bool", _joined(isinstance(op, ast.And), [self.wanted(v, "bool", depth) for v in values])
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in _ARITHMETIC:
-                do = _ARITHMETIC[type(op)]
+                return "bool", joined(isinstance(op, ast.And), [self.wanted(v, "bool", depth) for v in values])
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() as op, right=right):
                 self.simple = False
-                a, b = self.wanted(left, "number", depth), self.wanted(right, "number", depth)
-                return "number", lambda scope: _clamp(do(a(scope), b(scope)))
+                return "number", arithmetic(op, self.wanted(left, "number", depth), self.wanted(right, "number", depth))
             case ast.Compare():
                 return self.compare(node, depth)
             case ast.Call(func=ast.Name(id="seen"), args=[ast.Constant(value=str(name)) as argument], keywords=[]):
@@ -238,24 +199,22 @@ class _Compiler:
             hint = f"write {str(value).lower()}"
             raise self.fail("E_EXPR_FORBIDDEN", f"{value} is not part of the language", node, hint)
         if isinstance(value, str):
-            return "text", lambda scope: value
+            return "text", constant(value)
         if isinstance(value, int | float) and abs(value) <= BOUND:
-            number = float(value)
-            return "number", lambda scope: number
+            return "number", constant(float(value))
         raise self.fail("E_EXPR_FORBIDDEN", f"only text and numbers up to {BOUND:g} may be written out", node)
 
     def name(self, node: ast.Name) -> tuple[Type, Closure]:
         name = node.id
         if name in _LITERALS:
-            literal = _LITERALS[name]
-            return "bool", lambda scope: literal
+            return "bool", constant(_LITERALS[name])
         if name not in self.names.types:
             raise self.fail("E_UNKNOWN_NAME", f"unknown name {name!r}", node, _hint(name, self.names.types))
         self.used.add(name)
-        return self.names.types[name], lambda scope: scope.names[name]
+        return self.names.types[name], name_of(name)
 
     def compare(self, node: ast.Compare, depth: int) -> tuple[Type, Closure]:
-        tests: list[tuple[Callable[[Any, Any], bool], Closure, Closure]] = []
+        tests: list[Closure] = []
         left = node.left
         for op, right in zip(node.ops, node.comparators, strict=True):
             kind, a = self.visit(left, depth + 1)
@@ -265,8 +224,7 @@ class _Compiler:
                 options = [self.wanted(item, kind, depth + 1) for item in right.elts]
                 for item in right.elts:
                     self.note(left, item)
-                negate = isinstance(op, ast.NotIn)
-                tests.append(_membership(a, options, negate))
+                tests.append(membership(a, options, negate=isinstance(op, ast.NotIn)))
                 left = right
                 continue
             b = self.wanted(right, kind, depth)
@@ -274,21 +232,13 @@ class _Compiler:
             self.note(right, left)
             if kind == "number" and not (_constant(left) or _constant(right)):
                 self.simple = False
-            if isinstance(op, ast.Eq | ast.NotEq):
-                tests.append((operator.eq if isinstance(op, ast.Eq) else operator.ne, a, b))
-            elif type(op) in _ORDER:
-                if kind != "number":
-                    raise self.fail("E_EXPR_TYPE", f"only numbers are larger or smaller, not a {kind}", left)
-                tests.append((_ORDER[type(op)], a, b))
-            else:
+            if isinstance(op, ast.Is | ast.IsNot):
                 raise self.fail("E_EXPR_FORBIDDEN", "`is` is not part of the language", left, "write ==")
+            if kind != "number" and not isinstance(op, ast.Eq | ast.NotEq):
+                raise self.fail("E_EXPR_TYPE", f"only numbers are larger or smaller, not a {kind}", left)
+            tests.append(comparison(op, a, b))
             left = right
-        if len(tests) > 1:
-            return "bool", _joined(True, [_test(*parts) for parts in tests])
-        name, constant = node.left, node.comparators[0]
-        if isinstance(name, ast.Name) and name.id not in _LITERALS and isinstance(constant, ast.Constant):
-            return "bool", _name_test(tests[0][0], name.id, tests[0][2](_NOTHING))
-        return "bool", _test(*tests[0])
+        return "bool", tests[0] if len(tests) == 1 else joined(True, tests)
 
     def note(self, side: ast.expr, other: ast.expr) -> None:
         """Remember what a name is compared with, for the search in the linter."""
@@ -302,38 +252,6 @@ class _Compiler:
             number = other.operand.value
             if isinstance(number, int | float):
                 values.add(-float(number))
-
-
-_NOTHING = Scope({}, {}, ())
-
-
-def _joined(every: bool, parts: list[Closure]) -> Closure:
-    """``and`` or ``or`` of two or more parts, left to right, as far as needed."""
-    if len(parts) > 2:
-        rest = _joined(every, parts[1:])
-        parts = [parts[0], rest]
-    first, second = parts
-    if every:
-        return lambda scope: first(scope) and second(scope)
-    return lambda scope: first(scope) or second(scope)
-
-
-def _test(test: Callable[[Any, Any], bool], a: Closure, b: Closure) -> Closure:
-    return lambda scope: test(a(scope), b(scope))
-
-
-def _name_test(test: Callable[[Any, Any], bool], name: str, constant: Value) -> Closure:
-    """The commonest condition by far, ``name == constant``, without further calls."""
-    return lambda scope: test(scope.names[name], constant)
-
-
-def _membership(
-    a: Closure, options: list[Closure], negate: bool
-) -> tuple[Callable[[Any, Any], bool], Closure, Closure]:
-    def among(value: Any, found: list[Any]) -> bool:
-        return (value in found) != negate
-
-    return among, a, lambda scope: [option(scope) for option in options]
 
 
 def _constant(node: ast.expr) -> bool:

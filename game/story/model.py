@@ -263,6 +263,16 @@ class Script:
         return {}
 
     @cached_property
+    def bits(self) -> Mapping[str, int]:
+        """By the id of a line or choice, one bit of a whole number: a set of them is a number. Nodes have none."""
+        return {name: 1 << at for at, name in enumerate(self.ids)}
+
+    @cached_property
+    def ids(self) -> tuple[str, ...]:
+        """The ids of lines and choices in the order of their bits."""
+        return tuple({**self.lines, **self.choices})
+
+    @cached_property
     def lines(self) -> Mapping[str, LineDef]:
         """Every spoken line by its id."""
         return {line.id: line for line in self.all_lines()}

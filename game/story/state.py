@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any
 
 from game.core.errors import BadInput, Where
 from game.story.model import Script
 from game.story.vocabulary import OUTCOMES, Value
 
-__all__ = ["Memory", "StoryState", "afternoon_of", "begin", "memory_of", "restore", "save"]
+__all__ = ["Memory", "Past", "StoryState", "afternoon_of", "begin", "memory_of", "restore", "save"]
 
 SAVE_VERSION = 1
 _MAX_ENTRIES = 20_000
@@ -55,19 +55,71 @@ class StoryState:
     ended: str | None = None
     returns: tuple[str, ...] = ()
     visits: Mapping[str, int] = field(default_factory=dict)
-    said: frozenset[str] = frozenset()
-    chosen: frozenset[str] = frozenset()
+    said: frozenset[str] = field(default_factory=frozenset)
+    chosen: frozenset[str] = field(default_factory=frozenset)
     heard: Mapping[str, int] = field(default_factory=dict)
     earlier: frozenset[str] = frozenset()
     variables: Mapping[str, Value] = field(default_factory=dict)
     offered: tuple[tuple[str, str], ...] = ()
     last_lines: tuple[str, ...] = ()
 
-    def moved(self, **changes: Any) -> StoryState:
-        """As ``dataclasses.replace``, in a third of its time: every step of every talk makes one."""
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> frozenset[str]:
+            # What a step said and chose are bits; as ids they are made when somebody asks.
+            past = self.__dict__.get("past")
+            if past is None or name not in ("said", "chosen"):
+                raise AttributeError(name)
+            found = self.__dict__[name] = past.ids(name)
+            return found
+
+    @staticmethod
+    def stepped(known: dict[str, Any]) -> StoryState:
+        """A state of these very fields, ``past`` in place of ``said`` and ``chosen``: every step of every talk makes
+        one."""
         fresh = object.__new__(StoryState)
-        object.__setattr__(fresh, "__dict__", {**self.__dict__, **changes})
+        object.__setattr__(fresh, "__dict__", known)
         return fresh
+
+    def __reduce__(self) -> tuple[type[StoryState], tuple[Any, ...]]:
+        return StoryState, tuple(getattr(self, each.name) for each in fields(self))
+
+
+class Past:
+    """What was said, chosen and seen on earlier visits as bits of one script (``Script.bits``), for its next step.
+
+    strange: what was said and chosen that the script does not know (any more).
+    """
+
+    __slots__ = ("chosen", "earlier", "said", "script", "strange")
+
+    def __init__(
+        self, script: Script, said: int, chosen: int, earlier: int, strange: tuple[frozenset[str], frozenset[str]]
+    ) -> None:
+        self.script, self.said, self.chosen, self.earlier, self.strange = script, said, chosen, earlier, strange
+
+    @staticmethod
+    def of(script: Script, state: StoryState) -> Past:
+        """That of a state: as the step that made it left it, or worked out from its ids."""
+        past: Past | None = state.__dict__.get("past")
+        if past is not None and past.script is script:
+            return past
+        bits = script.bits
+        said, chosen, earlier = [
+            sum([bits.get(name, 0) for name in ids]) for ids in (state.said, state.chosen, state.earlier)
+        ]
+        strange = [frozenset([name for name in ids if name not in bits]) for ids in (state.said, state.chosen)]
+        return Past(script, said, chosen, earlier, (strange[0], strange[1]))
+
+    def ids(self, name: str) -> frozenset[str]:
+        """Those ``said`` or ``chosen``."""
+        left, strange = (self.said, self.strange[0]) if name == "said" else (self.chosen, self.strange[1])
+        names, found = self.script.ids, set(strange)
+        while left:
+            low = left & -left
+            found.add(names[low.bit_length() - 1])
+            left ^= low
+        return frozenset(found)
 
 
 def begin(

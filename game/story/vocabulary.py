@@ -19,6 +19,7 @@ __all__ = [
     "STANDING_ACTS",
     "WHEN",
     "EnvName",
+    "Environment",
     "Type",
     "Value",
     "environment",
@@ -93,8 +94,14 @@ ENV: Mapping[str, EnvName] = MappingProxyType(
 )
 
 
+class Environment(dict[str, Value]):
+    """Names of ENV whose values are known to have the right types: what the game itself works out."""
+
+
 def environment(env: Mapping[str, Value]) -> dict[str, Value]:
     """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
+    if isinstance(env, Environment):
+        return {**_DEFAULTS, **env}
     out = dict(_DEFAULTS)
     for name, value in env.items():
         kind = _KINDS.get(name)

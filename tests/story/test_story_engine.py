@@ -13,7 +13,7 @@ import pytest
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
 from game.story import ACTS, Chose, Memory, Script, Start, advance, begin, load_script, memory_of, restore, resume, save
-from game.story.chance import pick_weighted, shuffled, uniform
+from game.story.chance import Lots, pick_weighted, shuffled, uniform, uniforms
 
 
 def _edited(tmp_path: Path, text: str, *edits: tuple[str, str]) -> Script:
@@ -368,8 +368,27 @@ def test_chance_is_even_and_repeatable():
     assert abs(sum((a - 0.5) * (b - 0.5) for a, b in zip(values, other, strict=True)) / 4000) < 0.01
     picks = Counter(pick_weighted([1, 3], uniform(1, counter)) for counter in range(2000))
     assert 1350 < picks[1] < 1650
-    assert sorted(shuffled(6, 1, 0)) == list(range(6))
-    assert Counter(shuffled(3, seed, 0)[0] for seed in range(600))[0] > 150
+    assert sorted(shuffled(6, uniforms(1, 0, 5))) == list(range(6))
+    assert Counter(shuffled(3, uniforms(seed, 0, 2))[0] for seed in range(600))[0] > 150
+
+
+def test_many_numbers_at_once_are_those_of_one_after_the_other():
+    rng = random.Random(5)
+    for count in range(17):
+        seed, counter = rng.getrandbits(53), rng.getrandbits(rng.randrange(1, 40))
+        assert uniforms(seed, counter, count) == [uniform(seed, counter + at) for at in range(count)]
+
+
+def test_lots_are_drawn_as_weights_have_it():
+    class Thing:
+        def __init__(self, weight):
+            self.weight = weight
+
+    rng = random.Random(6)
+    for weights in ([1.0] * 7, [1.0, 2.0, 0.5], [3.0]):
+        lots = Lots([Thing(weight) for weight in weights])
+        for chance in [rng.random() for _ in range(200)] + [0.0, 1.0 - 2.0**-53]:
+            assert lots.items.index(lots.draw(chance)) == pick_weighted(weights, chance)
 
 
 def test_a_thousand_random_moves_stay_on_the_rails(talk, tiny):
