@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Generic, Protocol, TypeVar
 
 __all__ = ["Lots", "pick_weighted", "shuffled", "uniform", "uniforms"]
@@ -86,10 +87,15 @@ class Lots(Generic[Item]):
         return self.items[pick_weighted(self._weights, chance)]
 
 
-def shuffled(count: int, chances: Sequence[float]) -> list[int]:
+def shuffled(count: int, chances: Sequence[float]) -> Sequence[int]:
     """0..count−1 in random order (Fisher–Yates), by count − 1 numbers in [0, 1)."""
+    return _exchanged(count, *[int(chance * left) for chance, left in zip(chances, range(count, 1, -1), strict=False)])
+
+
+@lru_cache(maxsize=4096)
+def _exchanged(count: int, *others: int) -> tuple[int, ...]:
+    """0..count−1 after the last was exchanged with one of others, then the last but one, and so on."""
     order = list(range(count))
-    for last, chance in zip(range(count - 1, 0, -1), chances, strict=False):
-        other = int(chance * (last + 1))
+    for last, other in zip(range(count - 1, 0, -1), others, strict=True):
         order[last], order[other] = order[other], order[last]
-    return order
+    return tuple(order)

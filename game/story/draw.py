@@ -2,39 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from game.story.acts import ActTable
 from game.story.chance import shuffled, uniform, uniforms
 from game.story.expressions import Scope
-from game.story.prepared import Act, Left, ReadyChoice
+from game.story.prepared import Pool, ReadyChoice
 
 __all__ = ["draw_choices"]
 
 
-def draw_choices(
-    of: Sequence[Act], scope: Scope, chosen: int, seen: int, count: int, acts: ActTable, seed: int, counter: int
-) -> list[ReadyChoice]:
-    """``count`` (0 to 8) choices of different acts, by the numbers of stream ``seed`` from ``counter`` on.
+def draw_choices(pool: Pool, scope: Scope, chosen: int, seen: int, seed: int, counter: int) -> list[ReadyChoice]:
+    """Choices of different acts, by the numbers of stream ``seed`` from ``counter`` on.
 
-    of: by act, what the pool holds; scope, and the bits of what was chosen in the talk and seen at the stall, tell
-    which of it can be taken now. The set of acts is drawn from those in which some line is right for at least six of
-    the seven emotions (or for as many as the pool allows), so that the offer tells nothing about what is felt. Too
-    few acts in the pool: the rest is filled with further choices.
+    scope, and the bits of what was chosen in the talk and seen at the stall, tell which of the pool can be taken now.
+    The set of acts is drawn from those in which some line is right for at least six of the seven emotions (or for as
+    many as the pool allows), so that the offer tells nothing about what is felt. Too few acts in the pool: the rest is
+    filled with further choices.
     """
-    here: dict[str, Left[ReadyChoice]] = {}
-    for act in of:
-        left = act.left(chosen, seen)
-        if left.open or (left.items and _any_usable(left, scope)):
-            here[act.name] = left
-    if not here or count <= 0:
+    here, sets = pool.round(chosen, seen).sets(scope)
+    if not sets:
         return []
-    sets = acts.fair_sets(tuple(here), count)
     # One number for the set, one for each of its acts, and those that shuffle.
+    count = pool.count
     chances = uniforms(seed, counter + 1, 2 * count)
-    of_set = sets[int(chances[0] * len(sets))]
     drawn: list[ReadyChoice] = []
-    for name, chance in zip(of_set, chances[1:], strict=False):
+    for name, chance in zip(sets[int(chances[0] * len(sets))], chances[1:], strict=False):
         lots = here[name].usable(scope)
         drawn.append(lots.only or lots.draw(chance))
     counter += 2 + len(drawn)
@@ -45,7 +35,3 @@ def draw_choices(
         drawn.append(rest.pop(int(uniform(seed, counter) * len(rest))))
         counter += 1
     return [drawn[i] for i in shuffled(len(drawn), uniforms(seed, counter, len(drawn) - 1))]
-
-
-def _any_usable(left: Left[ReadyChoice], scope: Scope) -> bool:
-    return any(test is None or test(scope) for _, test in left.items)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from game.core.errors import BadInput
 from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Warp, timer_at
-from game.story.chance import Lots, uniform
+from game.story.chance import Lots, uniforms
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
@@ -33,6 +33,7 @@ __all__ = ["advance", "resume"]
 _MAX_STEPS = 500
 _MAX_RETURNS = 16
 _DRAW_STREAM = 0x9E3779B9
+_AHEAD = 6
 
 
 def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -90,18 +91,16 @@ def _known(kind: str, script: Script) -> str:
 
 def _wording(choice: ReadyChoice, text: str) -> ReadyLine:
     """One of a choice's wordings by its id, the first where it has none such."""
-    lines = choice.wordings.lines
-    if len(lines) == 1:
-        return lines[0]
-    return next((line for line in lines if line.id == text), lines[0])
+    return next((line for line in choice.texts if line.id == text), choice.texts[0])
 
 
 class _Run:
-    """The working copy of a state during one step; as a container, everything said, chosen or visited so far."""
+    """The working copy of a state during one step. said, chosen: as bits; seen: ids of all that was said, chosen or
+    visited, on earlier visits, too."""
 
     __slots__ = (
-        "bits", "choices", "chosen", "counter", "ended", "heard", "lines", "names", "node", "pairs", "past", "ready",
-        "returns", "said", "scope", "script", "state", "stimuli", "told", "turn", "variables", "visits",
+        "ahead", "choices", "chosen", "counter", "earlier", "ended", "heard", "lines", "names", "node", "pairs", "past",
+        "ready", "returns", "said", "scope", "script", "seen", "state", "stimuli", "told", "turn", "variables", "visits",
     )  # fmt: skip
 
     def __init__(self, script: Script, state: StoryState, env: Mapping[str, Value]) -> None:
@@ -111,29 +110,28 @@ class _Run:
         self.returns, self.heard, self.variables = state.returns, state.heard, state.variables
         self.visits = dict(state.visits)
         past = self.past = Past.of(script, state)
-        self.said, self.chosen = past.said, past.chosen
-        self.bits = script.bits
+        self.said, self.chosen, self.earlier = past.said, past.chosen, past.earlier
+        self.seen = set(past.seen)
         names = self.names = environment(env)
         names.update(state.variables)
         names["item"], names["visit"] = state.item, float(state.visit)
         told = str(names["quality"]) if names["tells"] else "none"
         self.told = "veiled" if told == "none" else told
         self.ready = prepared(script, state.item)
-        self.scope = Scope(names, self.visits, self)
+        self.scope = Scope(names, self.visits, self.seen)
+        self.ahead: list[float] = []
         self.lines: list[Spoken] = []
         self.stimuli: list[Stimulus] = []
         self.pairs: tuple[Pair, ...] = ()
         self.choices: tuple[Choice, ...] = ()
 
-    def __contains__(self, seen: object) -> bool:
-        bit = self.bits.get(seen)  # type: ignore[call-overload]
-        if bit and (self.said | self.chosen | self.past.earlier) & bit:
-            return True
-        return seen in self.visits or seen in self.state.earlier
-
     def chance(self) -> float:
+        # Numbers come cheaper by the half dozen; those that nobody takes are drawn again in the next step.
+        if not self.ahead:
+            self.ahead = uniforms(self.state.seed, self.counter + 1, _AHEAD)
+            self.ahead.reverse()
         self.counter += 1
-        return uniform(self.state.seed, self.counter)
+        return self.ahead.pop()
 
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
@@ -150,6 +148,7 @@ class _Run:
             if offer is not None:
                 self.say_one(offer)
         self.chosen |= choice.bit
+        self.seen.add(choice_id)
         if choice.effects:
             # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
             self.apply(choice.effects)
@@ -158,7 +157,7 @@ class _Run:
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
-        ready, visits = self.ready, self.visits
+        ready, visits, seen = self.ready, self.visits, self.seen
         nodes = ready.nodes
         for _ in range(_MAX_STEPS):
             node = nodes.get(target)
@@ -182,6 +181,7 @@ class _Run:
                 break
             self.node = target
             visits[target] = visits.get(target, 0) + 1
+            seen.add(target)
             if node.effects:
                 self.apply(node.effects)
             if node.stimulus is not None:
@@ -250,7 +250,7 @@ class _Run:
             if (line.again or not self.said & line.bit) and (line.test is None or line.test(self.scope)):
                 self.say(line)
         else:
-            lots = group.left(self.said, self.past.earlier).usable(self.scope)
+            lots = group.left(self.said, self.earlier).usable(self.scope)
             if group.recalls:
                 lots = group.least_heard(lots, self.heard)
             if lots.items:
@@ -259,6 +259,7 @@ class _Run:
     def say(self, line: ReadyLine) -> None:
         if not self.said & line.bit:
             self.said |= line.bit
+            self.seen.add(line.id)
         elif not line.again:
             return
         if line.again:
@@ -272,7 +273,8 @@ class _Run:
         return line.when in (None, self.told) and (line.test is None or bool(line.test(self.scope)))
 
     def spoken(self, line: ReadyLine) -> Spoken:
-        key = tuple([self.names.get(name) for name in line.asks]) if line.asks else ()
+        asks = line.asks
+        key = tuple([self.names.get(name) for name in asks]) if asks else ()
         known = line.spoken.get(key)
         if known is None:
             given = line.line
@@ -288,7 +290,7 @@ class _Run:
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ReadyChoice) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        if self.chosen & choice.used or (choice.gone and choice.id in self):
+        if self.chosen & choice.used or (choice.gone and choice.id in self.seen):
             return False
         return choice.shown is None or bool(choice.shown(self.scope))
 
@@ -304,14 +306,12 @@ class _Run:
             self.pairs, self.choices = node.table
             return True
         drawn: Sequence[ReadyChoice] = ()
-        if node.acts:
-            seen = self.past.earlier | self.said | self.chosen
-            seed, count = self.state.seed ^ _DRAW_STREAM, node.node.draw
-            drawn = draw_choices(
-                node.acts, self.scope, self.chosen, seen, count, self.script.acts, seed, self.turn * 64
-            )
+        if node.pool is not None:
+            seen = self.earlier | self.said | self.chosen
+            seed = self.state.seed ^ _DRAW_STREAM
+            drawn = draw_choices(node.pool, self.scope, self.chosen, seen, seed, self.turn * 64)
         offered = [(choice, self.variant(choice)) for choice in drawn]
-        offered += [(choice, self.variant(choice)) for choice in node.laid if self.shown(choice)]
+        offered += [(choice, self.variant(choice)) for choice in node.laid if choice.always or self.shown(choice)]
         taken = self.lay(offered, usable=len(drawn))
         if node.always:
             node.table = (self.pairs, self.choices)
@@ -319,26 +319,30 @@ class _Run:
 
     def lay(self, offered: Sequence[tuple[ReadyChoice, ReadyLine]], *, usable: int = 0) -> bool:
         """Put choices on the table; ``usable``: so many of the first are known to be. Whether any can be taken."""
-        options = []
+        taken, options = usable > 0, []
         for at, (choice, line) in enumerate(offered):
-            if at < usable or self.usable(choice):
+            if at < usable or choice.always or self.usable(choice):
                 options.append(self.option(choice, line))
+                taken = True
             else:
                 options.append(self.greyed(choice, line))
         self.pairs = tuple([line.pair for _, line in offered])
         self.choices = tuple(options)
-        return usable > 0 or any(option.available for option in options)
+        return taken
 
     def variant(self, choice: ReadyChoice) -> ReadyLine:
         """A wording not yet used in this talk, by chance; the first where all were."""
-        group = choice.wordings
-        if group.only is not None:
-            return group.only
+        texts = choice.texts
+        if len(texts) == 1:
+            return texts[0]
+        said = self.said & choice.mask
         if choice.fits:
-            lots = group.left(self.said, 0).usable(self.scope)
+            lots = choice.fresh.get(said)
+            if lots is None:
+                lots = choice.fresh.keep(said, Lots([line for line in texts if not said & line.bit]))
         else:
-            lots = Lots([line for line in group.lines if not self.said & line.bit and self.holds(line)])
-        return lots.only or (lots.draw(self.chance()) if lots.items else group.lines[0])
+            lots = Lots([line for line in texts if not said & line.bit and self.holds(line)])
+        return lots.only or (lots.draw(self.chance()) if lots.items else texts[0])
 
     def option(self, choice: ReadyChoice, line: ReadyLine) -> Choice:
         """A choice that can be taken, in one of its wordings, as the player sees it."""
@@ -379,9 +383,8 @@ class _Run:
                 "variables": self.variables,
                 "offered": self.pairs,
                 "last_lines": tuple([line.id for line in self.lines]),
-                "past": Past(past.script, self.said, self.chosen, past.earlier, past.strange),
+                "past": Past(past.script, self.said, self.chosen, past.earlier, self.seen, past.strange),
             }
         )
         timed = None if timer is None else timer_at(timer, self.choices)
         return fresh, Beat(self.node, tuple(self.lines), self.choices, tuple(self.stimuli), self.ended, timed)
-

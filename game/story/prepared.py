@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Generic, Literal, TypeVar
 
+from game.story.acts import ActTable
 from game.story.beat import Choice, Spoken, Stimulus
 from game.story.chance import Lots
 from game.story.expressions import Expression, Scope
@@ -39,7 +40,7 @@ Pair = tuple[str, str]
 _FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
 """Names in braces that mean the same throughout all talks about an item."""
 _MOST_SEEN = 3
-_MOST_KEPT = 4096
+_MOST_KEPT = 256
 
 Key = TypeVar("Key")
 Kept = TypeVar("Kept")
@@ -49,11 +50,15 @@ Item = TypeVar("Item", bound="ReadyLine | ReadyChoice")
 class Few(dict[Key, Kept]):
     """What was worked out, by what it depends on; begins anew where there would be too much of it."""
 
-    __slots__ = ()
+    __slots__ = ("_most",)
+
+    def __init__(self, most: int = _MOST_KEPT) -> None:
+        super().__init__()
+        self._most = most
 
     def keep(self, key: Key, value: Kept) -> Kept:
         """Remember a value and give it back."""
-        if len(self) >= _MOST_KEPT:
+        if len(self) >= self._most:
             self.clear()
         self[key] = value
         return value
@@ -112,6 +117,10 @@ class Left(Generic[Item]):
         fits = [item for (item, _), at in zip(self.items, self._which, strict=True) if at < 0 or answers[at]]
         return Lots(self._among(fits))
 
+    def any_usable(self, scope: Scope) -> bool:
+        """Whether any of them may be taken."""
+        return self.open or any(test is None or test(scope) for _, test in self.items)
+
     def usable(self, scope: Scope) -> Lots[Item]:
         """Those that may be taken, or said."""
         if self._free is not None:
@@ -161,14 +170,16 @@ class ReadyGroup:
 
 class ReadyChoice:
     """A choice in talks about an item. used: its bit, where it is not offered again in the talk; gone: the same, where
-    it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles.
+    it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles; always: nothing
+    can keep it from being taken.
 
-    wordings: its texts as lines that are drawn from; fits: whether each of them fits at any time.
+    texts: its wordings, the bits of which are ``mask``; fresh: by the bits of those said, the others, where each of them
+    fits at any time (``fits``).
     """
 
     __slots__ = (
-        "act", "bit", "choice", "effects", "fits", "gone", "hidden", "id", "needs", "ruled_out", "shown", "silent",
-        "used", "ways", "weight", "wordings",
+        "act", "always", "bit", "choice", "effects", "fits", "fresh", "gone", "hidden", "id", "mask", "needs",
+        "ruled_out", "shown", "silent", "texts", "used", "ways", "weight",
     )  # fmt: skip
 
     def __init__(self, choice: ChoiceDef, ready: Prepared) -> None:
@@ -181,16 +192,12 @@ class ReadyChoice:
         # Whoever takes it from a table of other days asks for what the item settles, too.
         self.shown = _never if shown is False else shown
         self.needs = _never if needs is False else needs
-        self.wordings = ReadyGroup([ready.line(line, choice.id) for line in choice.texts], "weighted")
+        self.always = self.shown is None and self.needs is None and not (self.used or self.gone)
+        self.texts = tuple([ready.line(line, choice.id) for line in choice.texts])
+        self.mask = sum([line.bit for line in self.texts])
         self.fits = all(line.when is None and line.condition is None for line in choice.texts)
+        self.fresh: Few[int, Lots[ReadyLine]] = Few()
         self.effects, self.ways = _effects(choice.effects), ready.ways(choice.to)
-
-    @property
-    def always(self) -> bool:
-        """Whether it is on the table in the same way in every talk about the item."""
-        line = self.wordings.only
-        same = line is not None and not line.keeps and not (self.used or self.gone)
-        return same and self.shown is None and self.needs is None
 
 
 class Act:
@@ -214,13 +221,55 @@ class Act:
             return self._left.keep(used, Left(rest))
 
 
+class Pool:
+    """The choices that a node draws from, by act; count: how many it draws."""
+
+    __slots__ = ("_gone", "_rounds", "_used", "acts", "count", "fair")
+
+    def __init__(self, acts: Sequence[Act], count: int, fair: ActTable) -> None:
+        self.acts, self.count, self.fair = tuple(acts), count, fair
+        self._used = sum([act.used for act in acts])
+        self._gone = sum([act.gone for act in acts])
+        self._rounds: Few[int, Round] = Few(1024)
+
+    def round(self, chosen: int, seen: int) -> Round:
+        """What is left of it where so much was chosen in the talk and seen at the stall."""
+        used = chosen & self._used | seen & self._gone
+        try:
+            return self._rounds[used]
+        except KeyError:
+            lefts = {act.name: act.left(chosen, seen) for act in self.acts}
+            return self._rounds.keep(used, Round({name: left for name, left in lefts.items() if left.items}, self))
+
+
+class Round:
+    """What is left of a pool, by act; sets: those of its acts that may be on offer together, where each of them is
+    there without a question."""
+
+    __slots__ = ("_lefts", "_pool", "_sets")
+
+    def __init__(self, lefts: Mapping[str, Left[ReadyChoice]], pool: Pool) -> None:
+        self._lefts, self._pool = lefts, pool
+        self._sets = self._fair(lefts) if all(left.open for left in lefts.values()) else None
+
+    def _fair(self, lefts: Mapping[str, Left[ReadyChoice]]) -> Sequence[Sequence[str]]:
+        return self._pool.fair.fair_sets(tuple(lefts), self._pool.count) if lefts and self._pool.count > 0 else ()
+
+    def sets(self, scope: Scope) -> tuple[Mapping[str, Left[ReadyChoice]], Sequence[Sequence[str]]]:
+        """By act, choices of which some can be taken, and the sets of acts that may be on offer together."""
+        if self._sets is not None:
+            return self._lefts, self._sets
+        here = {name: left for name, left in self._lefts.items() if left.any_usable(scope)}
+        return here, self._fair(here)
+
+
 class ReadyNode:
     """A node in talks about an item. after: what is kept for coming back from its call; says: what it can say, by how
-    the player's line landed; acts: of its pools; laid: its own choices, then the standing ones. table: all that lies
+    the player's line landed; pool: what it draws from; laid: its own choices, then the standing ones. table: all that lies
     on it where that is the same in every talk; whoever lays it keeps it here."""
 
     __slots__ = (
-        "acts", "after", "call", "effects", "end", "id", "laid", "node", "says", "stimulus", "table", "waits", "ways",
+        "after", "call", "effects", "end", "id", "laid", "node", "pool", "says", "stimulus", "table", "waits", "ways",
     )  # fmt: skip
 
     def __init__(self, node: NodeDef, ready: Prepared) -> None:
@@ -230,7 +279,8 @@ class ReadyNode:
         self.stimulus = Stimulus(node.feel, node.id) if node.feel else None
         self.ways = ready.ways(node.to)
         self.says: dict[str, tuple[ReadySay, ...]] = {}
-        self.acts = ready.acts(node)
+        acts = ready.acts(node)
+        self.pool = Pool(acts, node.draw, ready.script.acts) if acts else None
         laid = [ready.choice(choice) for choice in (*node.choices, *(ready.script.standing if node.standing else ()))]
         self.laid = tuple([choice for choice in laid if not choice.hidden])
         self.table: tuple[tuple[Pair, ...], tuple[Choice, ...]] | None = None
@@ -238,7 +288,8 @@ class ReadyNode:
     @property
     def always(self) -> bool:
         """Whether the same lies on the table in every talk about the item."""
-        return not self.node.pools and bool(self.laid) and all(choice.always for choice in self.laid)
+        same = [len(choice.texts) == 1 and not choice.texts[0].keeps and choice.always for choice in self.laid]
+        return not self.node.pools and bool(same) and all(same)
 
 
 def _effects(effects: Iterable[EffectDef]) -> tuple[ReadyEffect, ...]:
@@ -256,7 +307,7 @@ class Prepared:
         self._choices: dict[str, ReadyChoice] = {}
         self._offers: dict[str, ReadyGroup | None] = {}
         self._asked: dict[str, Test] = {}
-        self._money: Few[int, Text] = Few()
+        self._money: Few[int, Text] = Few(4096)
 
     def node(self, name: str) -> ReadyNode:
         """A node by its name."""
@@ -308,7 +359,7 @@ class Prepared:
             return self._offers[told]
         except KeyError:
             choices = [self.choice(choice) for choice in self.script.standing if choice.act == "offer"]
-            lines = self._fitting([line.line for line in choices[0].wordings.lines], told) if choices else []
+            lines = self._fitting([line.line for line in choices[0].texts], told) if choices else []
             found = self._offers[told] = ReadyGroup(lines, "weighted") if lines else None
             return found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -85,18 +85,23 @@ class StoryState:
         return StoryState, tuple(getattr(self, each.name) for each in fields(self))
 
 
+Strange = tuple[frozenset[str], frozenset[str]]
+
+
 class Past:
     """What was said, chosen and seen on earlier visits as bits of one script (``Script.bits``), for its next step.
 
-    strange: what was said and chosen that the script does not know (any more).
+    seen: ids of all that and of the nodes passed; strange: what was said and chosen that the script does not know (any
+    more).
     """
 
-    __slots__ = ("chosen", "earlier", "said", "script", "strange")
+    __slots__ = ("chosen", "earlier", "said", "script", "seen", "strange")
 
     def __init__(
-        self, script: Script, said: int, chosen: int, earlier: int, strange: tuple[frozenset[str], frozenset[str]]
+        self, script: Script, said: int, chosen: int, earlier: int, seen: Collection[str], strange: Strange
     ) -> None:
-        self.script, self.said, self.chosen, self.earlier, self.strange = script, said, chosen, earlier, strange
+        self.script, self.said, self.chosen, self.earlier = script, said, chosen, earlier
+        self.seen, self.strange = seen, strange
 
     @staticmethod
     def of(script: Script, state: StoryState) -> Past:
@@ -109,7 +114,8 @@ class Past:
             sum([bits.get(name, 0) for name in ids]) for ids in (state.said, state.chosen, state.earlier)
         ]
         strange = [frozenset([name for name in ids if name not in bits]) for ids in (state.said, state.chosen)]
-        return Past(script, said, chosen, earlier, (strange[0], strange[1]))
+        seen = state.earlier | state.said | state.chosen | state.visits.keys()
+        return Past(script, said, chosen, earlier, seen, (strange[0], strange[1]))
 
     def ids(self, name: str) -> frozenset[str]:
         """Those ``said`` or ``chosen``."""
