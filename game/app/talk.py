@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import Any
 
 from game.core.errors import BadInput
@@ -39,7 +40,7 @@ from game.market import (
     surplus_share,
     turn_to_go,
 )
-from game.story import Beat, Chose, Memory, Script, Start, StoryState, Warp, advance, begin
+from game.story import Beat, Chose, Environment, Memory, Script, Start, StoryState, Value, Warp, advance, begin
 
 __all__ = [
     "MONEY_STEP",
@@ -108,29 +109,34 @@ class TalkState:
         return surplus_share(self.bargain)
 
 
+@lru_cache(maxsize=4096)
 def ask_money(list_price: int, ask: float) -> int:
     """The public asking price in yen, rounded up to whole tens, never above the list price."""
     return min(math.ceil(round(ask * list_price / MONEY_STEP, 6)) * MONEY_STEP, list_price)
 
 
-def talk_env(state: TalkState, assets: TalkAssets, **now: Any) -> dict[str, float | str | bool]:
-    """The names a dialogue condition may use; what is felt is not among them, on purpose."""
-    ask = ask_money(state.list_price, state.bargain.ask)
-    return {
-        "rounds": assets.market.rounds,
-        "trust": state.bargain.trust,
-        "patience": state.bargain.patience,
-        "round": state.bargain.round + 1,
+def talk_env(state: TalkState, assets: TalkAssets, **now: Value) -> Environment:
+    """The names a dialogue condition may use; what is felt is not among them, on purpose.
+
+    now: names that the present move decides; numbers among them are floats.
+    """
+    bargain, list_price = state.bargain, state.list_price
+    ask = float(ask_money(list_price, bargain.ask))
+    env: dict[str, Value] = {
+        "rounds": float(assets.market.rounds),
+        "trust": bargain.trust,
+        "patience": bargain.patience,
+        "round": bargain.round + 1.0,
         "ask": ask,
         "price": ask,
-        "list_price": state.list_price,
-        "purse": state.purse,
-        "visit": state.visit,
-        "offer": round(state.bargain.offer * state.list_price),
-        "deal_price": state.deal_price,
+        "list_price": float(list_price),
+        "purse": float(state.purse),
+        "visit": float(state.visit),
+        "offer": float(round(bargain.offer * list_price)),
+        "deal_price": float(state.deal_price),
         "tidying": state.answer.tidying,
-        **now,
     }
+    return Environment(env, **now)
 
 
 def start_talk(
@@ -232,11 +238,11 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     env = talk_env(
         moved,
         assets,
-        round=counter,
+        round=float(counter),
         quality=quality,
         tells=answer.tells,
         offer_result=answer.result,
-        offer=choice.offer or round(bargain.offer * state.list_price),
+        offer=float(choice.offer or round(bargain.offer * state.list_price)),
     )
     story, beat = advance(assets.script, state.story, Chose(choice.id, outcome=outcome), env)
     # The option's own `feel:` was added above, before the offer was weighed; the beat brings those of what was said.

@@ -14,7 +14,7 @@ from game.story.surroundings import load_person
 from game.story.text import Text, wrap
 from game.story.timing import TimedText, TimedWord
 from game.story.translations import write_lock
-from game.story.vocabulary import ACTS, ENV, OUTCOMES, STANDING_ACTS
+from game.story.vocabulary import ACTS, ENV, OUTCOMES, STANDING_ACTS, Environment, Value
 
 __all__ = [
     "ACTS",
@@ -26,6 +26,7 @@ __all__ = [
     "Beat",
     "Choice",
     "Chose",
+    "Environment",
     "Event",
     "Finding",
     "Findings",
@@ -43,6 +44,7 @@ __all__ = [
     "TimedText",
     "TimedWord",
     "Timer",
+    "Value",
     "Warp",
     "advance",
     "afternoon_of",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from game.core.errors import BadInput
 from game.story.model import Speaker, TimerDef
@@ -17,8 +18,7 @@ class Start:
     """The player steps up to the stall."""
 
 
-@dataclass(frozen=True)
-class Chose:
+class Chose(NamedTuple):
     """The player takes a choice of the last beat; ``outcome`` is what the market made of it, if anything."""
 
     choice: str
@@ -99,8 +99,7 @@ def timer_at(timer: TimerDef | None, choices: Sequence[Choice]) -> Timer | None:
     return Timer(timer.seconds, timer.default)
 
 
-@dataclass(frozen=True)
-class Beat:
+class Beat(NamedTuple):
     """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
 
     node: str

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from game.story.chance import shuffled, uniform, uniforms
 from game.story.expressions import Scope
-from game.story.prepared import Pool, ReadyChoice
+from game.story.pools import Pool
+from game.story.ready import ReadyChoice
 
 __all__ = ["draw_choices"]
 

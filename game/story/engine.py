@@ -12,17 +12,8 @@ from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Script
-from game.story.prepared import (
-    Pair,
-    ReadyChoice,
-    ReadyEffect,
-    ReadyGroup,
-    ReadyLine,
-    ReadyNode,
-    ReadySay,
-    Way,
-    prepared,
-)
+from game.story.prepared import prepared
+from game.story.ready import Pair, ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way
 from game.story.state import Past, StoryState
 from game.story.text import Text
 from game.story.vocabulary import OUTCOMES, Value, environment
@@ -100,14 +91,16 @@ class _Run:
 
     __slots__ = (
         "ahead", "choices", "chosen", "counter", "earlier", "ended", "heard", "lines", "names", "node", "pairs", "past",
-        "ready", "returns", "said", "scope", "script", "seen", "state", "stimuli", "told", "turn", "variables", "visits",
+        "ready", "returns", "said", "scope", "script", "seen", "state", "stimuli", "told", "turn", "variables",
+        "visits",
     )  # fmt: skip
 
     def __init__(self, script: Script, state: StoryState, env: Mapping[str, Value]) -> None:
         self.script, self.state = script, state
         self.node, self.counter, self.turn, self.ended = state.node, state.counter, state.turn, state.ended
         # The state's own until something is added.
-        self.returns, self.heard, self.variables = state.returns, state.heard, state.variables
+        self.returns, self.variables = state.returns, state.variables
+        self.heard: dict[str, int] = state.heard  # type: ignore[assignment]
         self.visits = dict(state.visits)
         past = self.past = Past.of(script, state)
         self.said, self.chosen, self.earlier = past.said, past.chosen, past.earlier
@@ -152,18 +145,16 @@ class _Run:
         if choice.effects:
             # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
             self.apply(choice.effects)
-        return self.way(choice.ways)
+        return choice.way or self.way(choice.ways)
 
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
-        ready, visits, seen = self.ready, self.visits, self.seen
+        ready, scope, told, visits, seen = self.ready, self.scope, self.told, self.visits, self.seen
         nodes = ready.nodes
         for _ in range(_MAX_STEPS):
-            node = nodes.get(target)
-            if node is None:
-                target = self.resolved(target)
-                node = ready.node(target)
+            node = nodes.get(target) or ready.node(self.resolved(target))
+            name = node.id
             if pending is not None:
                 ending = OUTCOMES[pending]
                 if node.waits or (ending and node.end is not None):
@@ -172,34 +163,32 @@ class _Run:
                     if ending:
                         closing, self.returns = pending, ()
                     elif outcome_node is not None:
-                        self.push(target)
+                        self.push(name)
                     pending = None
                     if outcome_node is not None:
                         target = outcome_node
                         continue
             if closing is not None and node.waits:
                 break
-            self.node = target
-            visits[target] = visits.get(target, 0) + 1
-            seen.add(target)
+            self.node = name
+            visits[name] = visits.get(name, 0) + 1
+            seen.add(name)
             if node.effects:
                 self.apply(node.effects)
             if node.stimulus is not None:
                 self.stimuli.append(node.stimulus)
-            says = node.says.get(self.told)
-            if says is None:
-                says = ready.says(node, self.told)
-            if says:
-                self.speak(says)
+            for test, group in node.says.get(told) or ready.says(node, told):
+                if test is None or test(scope):
+                    self.say_one(group)
             if node.end is not None:
                 self.ended = node.end
                 return
             if node.waits:
-                if self.wait_at(node) or target == self.script.home:
+                if self.wait_at(node) or name == self.script.home:
                     return
                 target = HOME
             elif node.call is None:
-                target = self.way(node.ways)
+                target = node.way or self.way(node.ways)
             else:
                 self.push(node.after)
                 target = node.call
@@ -237,12 +226,6 @@ class _Run:
         self.variables = {name: names[name] for name in self.script.variables}
 
     # --- speaking --------------------------------------------------------------------------------------------
-    def speak(self, says: Sequence[ReadySay]) -> None:
-        """What a node says."""
-        for test, group in says:
-            if test is None or test(self.scope):
-                self.say_one(group)
-
     def say_one(self, group: ReadyGroup) -> None:
         """One line of those that can be said now."""
         line = group.only
@@ -263,8 +246,10 @@ class _Run:
         elif not line.again:
             return
         if line.again:
-            self.heard = {**self.heard, line.id: self.heard.get(line.id, 0) + 1}
-        self.lines.append(self.spoken(line))
+            if self.heard is self.state.heard:
+                self.heard = dict(self.heard)
+            self.heard[line.id] = self.heard.get(line.id, 0) + 1
+        self.lines.append(line.fixed or self.spoken(line))
         if line.stimulus is not None:
             self.stimuli.append(line.stimulus)
 
@@ -273,14 +258,14 @@ class _Run:
         return line.when in (None, self.told) and (line.test is None or bool(line.test(self.scope)))
 
     def spoken(self, line: ReadyLine) -> Spoken:
-        asks = line.asks
-        key = tuple([self.names.get(name) for name in asks]) if asks else ()
+        key = tuple([self.names.get(name) for name in line.asks])
         known = line.spoken.get(key)
         if known is None:
             given = line.line
             text = self.filled(given.text)
             known = Spoken(given.id, given.speaker, text.en, text.ja, given.face, given.tone, given.gesture)
             line.spoken.keep(key, known)
+            line.fixed = None if line.asks else known
         return known
 
     def filled(self, text: Text, *, keep: str = "") -> Text:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from game.core.errors import BadInput, Where
 from game.story.model import Script
@@ -88,20 +88,19 @@ class StoryState:
 Strange = tuple[frozenset[str], frozenset[str]]
 
 
-class Past:
+class Past(NamedTuple):
     """What was said, chosen and seen on earlier visits as bits of one script (``Script.bits``), for its next step.
 
     seen: ids of all that and of the nodes passed; strange: what was said and chosen that the script does not know (any
     more).
     """
 
-    __slots__ = ("chosen", "earlier", "said", "script", "seen", "strange")
-
-    def __init__(
-        self, script: Script, said: int, chosen: int, earlier: int, seen: Collection[str], strange: Strange
-    ) -> None:
-        self.script, self.said, self.chosen, self.earlier = script, said, chosen, earlier
-        self.seen, self.strange = seen, strange
+    script: Script
+    said: int
+    chosen: int
+    earlier: int
+    seen: Collection[str]
+    strange: Strange
 
     @staticmethod
     def of(script: Script, state: StoryState) -> Past:
@@ -254,6 +253,8 @@ def _variables(
     script: Script, kept: Mapping[str, Value], scopes: Iterable[str] = ("talk", "stall", "afternoon")
 ) -> dict[str, Value]:
     """All variables: kept values where name, scope and type still fit, initial values otherwise."""
+    if not kept:
+        return {name: variable.initial for name, variable in script.variables.items()}
     allowed = set(scopes)
     types = {"number": (int, float), "bool": (bool,), "text": (str,)}
     out: dict[str, Value] = {}

@@ -92,5 +92,5 @@ def test_what_is_worked_out_once_changes_no_talk(path: Path) -> None:
             if beat.ended is not None:
                 break
             event = Chose(draw.choice([choice.id for choice in beat.choices if choice.act != "leave"]))
-    laid = {name for name, node in warm.tables[next(iter(warm.items))].nodes.items() if node.table is not None}
+    laid = {node.id for node in warm.tables[next(iter(warm.items))].nodes.values() if node.table is not None}
     assert laid == ({"hub"} if path == BENCH else set())

@@ -67,6 +67,7 @@ class Eyes:
         self.assets = assets
         self.layers: Mapping[str, str] = layers or {}
         self._lands = _landings(assets.script)
+        self._lines = {choice.id: Line(choice.id, choice.act) for choice in assets.script.all_choices()}
         self._views: Mapping[str, Callable[[Table, TalkState, tuple[Sign, ...], tuple[Sign, ...]], View]] = {
             "table": lambda table, state, signs, quiet: table,
             "words": lambda table, state, signs, quiet: WordsView(table, self._said(state), self.told(state)),
@@ -91,7 +92,7 @@ class Eyes:
 
     def table(self, state: TalkState) -> Table:
         """What lies open."""
-        lines = tuple([Line(option.id, option.act) for option in state.beat.choices if option.available])
+        lines = tuple([self._lines[option.id] for option in state.beat.choices if option.available])
         bargain = state.bargain
         return Table(
             item=state.item,

@@ -1,0 +1,237 @@
+"""Lines, choices and nodes as talks about one item use them: everything that does not change in a talk is looked up.
+
+What was said and chosen are bits (``Script.bits``), so that what is left of a group is one ``&`` and a look into a
+table that fills as talks go on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from game.story.beat import Choice, Spoken, Stimulus
+from game.story.chance import Lots
+from game.story.expressions import Scope
+from game.story.forms import PERSON_SLOTS
+from game.story.model import ChoiceDef, EffectDef, LineDef, NodeDef, Order
+from game.story.vocabulary import Value
+
+if TYPE_CHECKING:
+    from game.story.prepared import Prepared
+
+__all__ = [
+    "Few", "Left", "Pair", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode", "ReadySay", "Test",
+    "Way", "never",
+]  # fmt: skip
+
+Test = Callable[[Scope], Any]
+ReadySay = tuple[Test | None, "ReadyGroup"]
+"""What must hold for a group of lines, and its lines."""
+Way = tuple[Test | None, str]
+"""What must hold for going on to a node."""
+ReadyEffect = tuple[str, Callable[[Scope], Value]]
+"""A variable and its new value."""
+Pair = tuple[str, str]
+"""The ids of a choice on the table and of its wording."""
+
+_FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
+"""Names in braces that mean the same throughout all talks about an item."""
+_MOST_KEPT = 256
+
+Key = TypeVar("Key")
+Kept = TypeVar("Kept")
+Item = TypeVar("Item", bound="ReadyLine | ReadyChoice")
+
+
+class Few(dict[Key, Kept]):
+    """What was worked out, by what it depends on; begins anew where there would be too much of it."""
+
+    __slots__ = ("_most",)
+
+    def __init__(self, most: int = _MOST_KEPT) -> None:
+        super().__init__()
+        self._most = most
+
+    def keep(self, key: Key, value: Kept) -> Kept:
+        """Remember a value and give it back."""
+        if len(self) >= self._most:
+            self.clear()
+        self[key] = value
+        return value
+
+
+def never(scope: Scope) -> bool:
+    """The test that nothing passes."""
+    return False
+
+
+class ReadyLine:
+    """A line in talks about an item.
+
+    bit: its place among everything said; test: what must hold, as far as the item does not settle it; pair: the ids of
+    a choice and of this, its wording. spoken, option: the line as it is said and as it is offered, by the values of the
+    names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is left open); fixed: as it is
+    said where it has none.
+    """
+
+    __slots__ = (
+        "again", "asks", "bit", "fixed", "id", "keeps", "line", "option", "pair", "spoken", "stimulus", "test",
+        "weight", "when",
+    )  # fmt: skip
+
+    def __init__(self, line: LineDef, bit: int, test: Test | None, choice: str) -> None:
+        self.line, self.id, self.again, self.when, self.bit, self.test = line, line.id, line.again, line.when, bit, test
+        self.weight = line.weight
+        self.asks = tuple(sorted(line.text.names - _FIXED_NAMES))
+        self.keeps = tuple([name for name in self.asks if name != "offer"])
+        self.stimulus = Stimulus(line.feel, line.id) if line.feel else None
+        self.pair = (choice, line.id)
+        self.fixed: Spoken | None = None
+        self.spoken: Few[tuple[Value | None, ...], Spoken] = Few()
+        self.option: Few[tuple[Value | None, ...], Choice] = Few()
+
+
+class Left(Generic[Item]):
+    """Lines or choices that are not used up, each with what must hold for it. open: whether the first of them is there
+    without a question; lots: what there is to draw from, by the answers to all their questions."""
+
+    __slots__ = ("_among", "_asked", "_free", "_which", "items", "lots", "open")
+
+    def __init__(
+        self, items: Sequence[tuple[Item, Test | None]], among: Callable[[list[Item]], Sequence[Item]] = lambda all: all
+    ) -> None:
+        """among: of those that fit, those among which chance decides."""
+        self.items, self._among = tuple(items), among
+        self.open = bool(items) and items[0][1] is None
+        self._asked = tuple(dict.fromkeys([test for _, test in items if test is not None]))
+        self._which = tuple([-1 if test is None else self._asked.index(test) for _, test in items])
+        self.lots: Few[tuple[bool, ...], Lots[Item]] = Few()
+        self._free = None if self._asked else self._fitting(())
+
+    def _fitting(self, answers: Sequence[bool]) -> Lots[Item]:
+        fits = [item for (item, _), at in zip(self.items, self._which, strict=True) if at < 0 or answers[at]]
+        return Lots(self._among(fits))
+
+    def any_usable(self, scope: Scope) -> bool:
+        """Whether any of them may be taken."""
+        return self.open or any(test is None or test(scope) for _, test in self.items)
+
+    def usable(self, scope: Scope) -> Lots[Item]:
+        """Those that may be taken, or said."""
+        if self._free is not None:
+            return self._free
+        answers = tuple([bool(test(scope)) for test in self._asked])
+        try:
+            return self.lots[answers]
+        except KeyError:
+            return self.lots.keep(answers, self._fitting(answers))
+
+
+class ReadyGroup:
+    """Lines of which one is said. only: the line where there is no other; recalls: whether it counts how often they
+    were heard."""
+
+    __slots__ = ("_left", "_mask", "lines", "only", "order", "recalls")
+
+    def __init__(self, lines: Sequence[ReadyLine], order: Order) -> None:
+        self.lines, self.order = tuple(lines), order
+        self.only = lines[0] if len(lines) == 1 else None
+        self.recalls = order == "shuffled" and any(line.again for line in lines)
+        self._mask = sum([line.bit for line in lines])
+        self._left: Few[int | tuple[int, int], Left[ReadyLine]] = Few()
+
+    def left(self, said: int, earlier: int) -> Left[ReadyLine]:
+        """Those that may still be said. said, earlier: bits of what was said in this talk and on earlier visits."""
+        key: int | tuple[int, int] = said & self._mask
+        if earlier:
+            key = (said & self._mask, earlier & self._mask)
+        try:
+            return self._left[key]
+        except KeyError:
+            lines = [(line, line.test) for line in self.lines if line.again or not line.bit & said]
+            return self._left.keep(key, Left(lines, partial(self._by_order, earlier)))
+
+    def _by_order(self, earlier: int, lines: Sequence[ReadyLine]) -> Sequence[ReadyLine]:
+        """Of lines that fit, those among which chance decides; what was said on earlier visits comes last."""
+        if earlier and len(lines) > 1:
+            lines = [line for line in lines if not line.bit & earlier] or lines
+        return lines[:1] if self.order == "listed" else lines
+
+    def least_heard(self, lots: Lots[ReadyLine], heard: Mapping[str, int]) -> Lots[ReadyLine]:
+        """Those heard least often in this talk. heard: how often, by id."""
+        least = min([heard.get(line.id, 0) for line in lots.items], default=0)
+        return Lots([line for line in lots.items if heard.get(line.id, 0) == least])
+
+
+class ReadyChoice:
+    """A choice in talks about an item. used: its bit, where it is not offered again in the talk; gone: the same, where
+    it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles;
+    always: nothing can keep it from being taken.
+
+    texts: its wordings, the bits of which are ``mask``; fresh: by the bits of those said, the others, where each of
+    them fits at any time (``fits``). way: where it leads whatever holds.
+    """
+
+    __slots__ = (
+        "act", "always", "bit", "choice", "effects", "fits", "fresh", "gone", "hidden", "id", "mask", "needs",
+        "ruled_out", "shown", "silent", "texts", "used", "way", "ways", "weight",
+    )  # fmt: skip
+
+    def __init__(self, choice: ChoiceDef, ready: Prepared) -> None:
+        self.choice, self.id, self.bit = choice, choice.id, ready.script.bits[choice.id]
+        self.act, self.silent, self.weight = choice.act, choice.silent, choice.weight
+        self.used = self.bit if choice.once == "talk" else 0
+        self.gone = self.bit if choice.once == "stall" else 0
+        shown, needs = ready.open(choice.condition), ready.open(choice.needs)
+        self.hidden, self.ruled_out = shown is False, False in (shown, needs)
+        # Whoever takes it from a table of other days asks for what the item settles, too.
+        self.shown = never if shown is False else shown
+        self.needs = never if needs is False else needs
+        self.always = self.shown is None and self.needs is None and not (self.used or self.gone)
+        self.texts = tuple([ready.line(line, choice.id) for line in choice.texts])
+        self.mask = sum([line.bit for line in self.texts])
+        self.fits = all(line.when is None and line.condition is None for line in choice.texts)
+        self.fresh: Few[int, Lots[ReadyLine]] = Few()
+        self.effects, self.ways = _effects(choice.effects), ready.ways(choice.to)
+        self.way = _only_way(self.ways)
+
+
+class ReadyNode:
+    """A node in talks about an item. after: what is kept for coming back from its call; says: what it can say, by how
+    the player's line landed; way: where it leads whatever holds; pool: what it draws from; laid: its own choices, then
+    the standing ones. table: all that lies on it where that is the same in every talk; whoever lays it keeps it here.
+    """
+
+    __slots__ = (
+        "after", "call", "effects", "end", "id", "laid", "node", "pool", "says", "stimulus", "table", "waits", "way",
+        "ways",
+    )  # fmt: skip
+
+    def __init__(self, node: NodeDef, ready: Prepared) -> None:
+        self.node, self.id, self.waits, self.end, self.call = node, node.id, node.waits, node.end, node.call
+        self.after = f"after:{node.id}"
+        self.effects = _effects(node.effects)
+        self.stimulus = Stimulus(node.feel, node.id) if node.feel else None
+        self.ways = ready.ways(node.to)
+        self.way = _only_way(self.ways)
+        self.says: dict[str, tuple[ReadySay, ...]] = {}
+        self.pool = ready.pool(node)
+        laid = [ready.choice(choice) for choice in (*node.choices, *(ready.script.standing if node.standing else ()))]
+        self.laid = tuple([choice for choice in laid if not choice.hidden])
+        self.table: tuple[tuple[Pair, ...], tuple[Choice, ...]] | None = None
+
+    @property
+    def always(self) -> bool:
+        """Whether the same lies on the table in every talk about the item."""
+        same = [len(choice.texts) == 1 and not choice.texts[0].keeps and choice.always for choice in self.laid]
+        return not self.node.pools and bool(same) and all(same)
+
+
+def _only_way(ways: Sequence[Way]) -> str:
+    """Where it goes on whatever holds, "" where that depends."""
+    return ways[0][1] if ways[0][0] is None else ""
+
+
+def _effects(effects: Iterable[EffectDef]) -> tuple[ReadyEffect, ...]:
+    return tuple([(effect.name, effect.value.evaluate) for effect in effects])
