@@ -307,7 +307,7 @@ class _Run:
         taken, options = usable > 0, []
         for at, (choice, line) in enumerate(offered):
             if at < usable or choice.always or self.usable(choice):
-                options.append(self.option(choice, line))
+                options.append(line.offered or self.option(choice, line))
                 taken = True
             else:
                 options.append(self.greyed(choice, line))
@@ -331,12 +331,13 @@ class _Run:
 
     def option(self, choice: ReadyChoice, line: ReadyLine) -> Choice:
         """A choice that can be taken, in one of its wordings, as the player sees it."""
-        key = tuple([self.names.get(name) for name in line.keeps]) if line.keeps else ()
+        key = tuple([self.names.get(name) for name in line.keeps])
         known = line.option.get(key)
         if known is None:
             text = self.filled(line.line.text, keep="offer")
             known = Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.choice.feel)
             line.option.keep(key, known)
+            line.offered = None if line.keeps else known
         return known
 
     def greyed(self, choice: ReadyChoice, line: ReadyLine) -> Choice:

@@ -70,5 +70,5 @@ class Round:
         """By act, choices of which some can be taken, and the sets of acts that may be on offer together."""
         if self._sets is not None:
             return self._lefts, self._sets
-        here = {name: left for name, left in self._lefts.items() if left.any_usable(scope)}
+        here = {name: left for name, left in self._lefts.items() if left.open or left.any_usable(scope)}
         return here, self._fair(here)

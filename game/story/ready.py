@@ -71,13 +71,13 @@ class ReadyLine:
 
     bit: its place among everything said; test: what must hold, as far as the item does not settle it; pair: the ids of
     a choice and of this, its wording. spoken, option: the line as it is said and as it is offered, by the values of the
-    names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is left open); fixed: as it is
-    said where it has none.
+    names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is left open); fixed, offered:
+    where it has none.
     """
 
     __slots__ = (
-        "again", "asks", "bit", "fixed", "id", "keeps", "line", "option", "pair", "spoken", "stimulus", "test",
-        "weight", "when",
+        "again", "asks", "bit", "fixed", "id", "keeps", "line", "offered", "option", "pair", "spoken", "stimulus",
+        "test", "weight", "when",
     )  # fmt: skip
 
     def __init__(self, line: LineDef, bit: int, test: Test | None, choice: str) -> None:
@@ -89,6 +89,7 @@ class ReadyLine:
         self.pair = (choice, line.id)
         self.fixed: Spoken | None = None
         self.spoken: Few[tuple[Value | None, ...], Spoken] = Few()
+        self.offered: Choice | None = None
         self.option: Few[tuple[Value | None, ...], Choice] = Few()
 
 
@@ -106,22 +107,29 @@ class Left(Generic[Item]):
         self.open = bool(items) and items[0][1] is None
         self._asked = tuple(dict.fromkeys([test for _, test in items if test is not None]))
         self._which = tuple([-1 if test is None else self._asked.index(test) for _, test in items])
-        self.lots: Few[tuple[bool, ...], Lots[Item]] = Few()
-        self._free = None if self._asked else self._fitting(())
+        self.lots: Few[int, Lots[Item]] = Few()
+        self._free = None if self._asked else self._fitting(1)
 
-    def _fitting(self, answers: Sequence[bool]) -> Lots[Item]:
-        fits = [item for (item, _), at in zip(self.items, self._which, strict=True) if at < 0 or answers[at]]
+    def _fitting(self, answers: int) -> Lots[Item]:
+        """answers: a one, then a bit for each question."""
+        yes = f"{answers:b}"[1:]
+        fits = [item for (item, _), at in zip(self.items, self._which, strict=True) if at < 0 or yes[at] == "1"]
         return Lots(self._among(fits))
 
     def any_usable(self, scope: Scope) -> bool:
         """Whether any of them may be taken."""
-        return self.open or any(test is None or test(scope) for _, test in self.items)
+        for _, test in self.items:  # noqa: SIM110 - in the innermost loop of all, without a generator
+            if test is None or test(scope):
+                return True
+        return False
 
     def usable(self, scope: Scope) -> Lots[Item]:
         """Those that may be taken, or said."""
         if self._free is not None:
             return self._free
-        answers = tuple([bool(test(scope)) for test in self._asked])
+        answers = 1
+        for test in self._asked:
+            answers = answers * 2 + (1 if test(scope) else 0)
         try:
             return self.lots[answers]
         except KeyError:

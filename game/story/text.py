@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 from game.core.errors import BadInput
 from game.story.forms import PERSON_SLOTS, Pronoun, capitalised, form_of
@@ -67,21 +68,47 @@ def fill(
     What has no value stays as it stands. No format language, nothing nested.
     """
 
-    def one(match: re.Match[str]) -> str:
-        name, colon, forms = match.group(1).partition(":")
-        if not _NAME.fullmatch(name):
-            return match.group()
-        if colon:
-            number = number_of(name)
-            value = None if number is None else form_of(forms, number, language)
+    filled = []
+    for piece in _pieces(text, language):
+        if isinstance(piece, str):
+            filled.append(piece)
+            continue
+        if piece.forms is None:
+            value = value_of(piece.name)
         else:
-            value = value_of(name)
+            number = number_of(piece.name)
+            value = None if number is None else form_of(piece.forms, number, language)
         if value is None:
-            return match.group()
-        grows = language == "en" and (colon or name in PERSON_SLOTS)
-        return capitalised(value, text[: match.start()]) if grows else value
+            value = piece.written
+        elif piece.before is not None:
+            value = capitalised(value, piece.before)
+        filled.append(value)
+    return "".join(filled)
 
-    return _SLOT.sub(one, text)
+
+class _Slot(NamedTuple):
+    """A name in braces, as written; the forms after its colon; the text before it, where its value may begin a
+    sentence."""
+
+    written: str
+    name: str
+    forms: str | None
+    before: str | None
+
+
+@lru_cache(maxsize=8192)
+def _pieces(text: str, language: str) -> tuple[str | _Slot, ...]:
+    """The words and the names in braces of a text, in turn: lines are taken apart once and filled in many times."""
+    pieces: list[str | _Slot] = []
+    end = 0
+    for match in _SLOT.finditer(text):
+        name, colon, forms = match.group(1).partition(":")
+        if _NAME.fullmatch(name):
+            grows = language == "en" and (colon or name in PERSON_SLOTS)
+            before = text[: match.start()] if grows else None
+            pieces += [text[end : match.start()], _Slot(match.group(), name, forms if colon else None, before)]
+            end = match.end()
+    return (*pieces, text[end:])
 
 
 def wrap(text: str, language: str) -> tuple[str, ...]:
