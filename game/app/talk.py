@@ -165,7 +165,8 @@ def start_talk(
     nothing = Beat(node="", lines=(), choices=(), stimuli=(), ended=None)
     first = TalkState(seed, item, list_price, purse, story, feeling, bargain, nothing, visit=visit)
     story, beat = advance(assets.script, story, Start(), talk_env(first, assets))
-    return replace(first, story=story, beat=beat, feeling=_with_stimuli(assets, feeling, beat))
+    felt = _with_stimuli(assets, feeling, beat)
+    return TalkState(seed, item, list_price, purse, story, felt, bargain, beat, visit)
 
 
 def warp_talk(assets: TalkAssets, state: TalkState, node: str) -> TalkState:
@@ -200,8 +201,10 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     """
     if state.ended:
         raise BadInput("choice", expected="a talk that goes on", seen=state.beat.ended)
-    said = next((option for option in state.beat.choices if option.id == choice.id and option.available), None)
-    if said is None:
+    for said in state.beat.choices:
+        if said.id == choice.id and said.available:
+            break
+    else:
         known = [option.id for option in state.beat.choices if option.available]
         raise BadInput("choice", expected=" | ".join(known), seen=choice.id)
     act = said.act

@@ -28,11 +28,14 @@ class Streams:
         self._generator = np.random.Generator(self._bits)
         self._start: Any = self._bits.state
         self._key: Any = self._start["state"]["key"]
+        self._names: dict[str, int] = {}
 
     def at(self, seed: int, purpose: str, counter: int) -> np.random.Generator:
         """The stream of one purpose (its first four letters tell it from others), good until the next call."""
-        name = int.from_bytes(purpose.encode("ascii")[:4], "big")
-        self._key[0] = name << 32 | counter
+        name = self._names.get(purpose)
+        if name is None:
+            name = self._names[purpose] = int.from_bytes(purpose.encode("ascii")[:4], "big") << 32
+        self._key[0] = name | counter
         self._key[1] = seed & 0xFFFFFFFF
         self._bits.state = self._start
         return self._generator

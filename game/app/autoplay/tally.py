@@ -176,18 +176,14 @@ class Coverage:
 
     def add(self, decisions: Sequence[Decision]) -> None:
         """Count what one talk passed through."""
-        first = decisions[0].before
-        self.nodes.update(first.story.visits)
-        self.lines.update(line.id for line in first.beat.lines)
+        first, last = decisions[0].before, decisions[-1].after
+        self.nodes.update(last.story.visits)
+        self.offered.update([option.id for decision in decisions for option in decision.before.beat.choices])
+        self.chosen.update([decision.choice.id for decision in decisions])
+        beats = [first.beat, *[decision.after.beat for decision in decisions]]
+        self.lines.update([line.id for beat in beats for line in beat.lines])
+        self.labels.update([dict(decision.after.record)["felt_label"] for decision in decisions])
         for decision in decisions:
-            before, after = decision.before.story, decision.after.story
-            self.offered.update(option.id for option in decision.before.beat.choices)
-            self.chosen[decision.choice.id] += 1
-            for node, count in after.visits.items():
-                if count != before.visits.get(node, 0):
-                    self.nodes[node] += count - before.visits.get(node, 0)
-            self.lines.update(line.id for line in decision.after.beat.lines)
-            self.labels[dict(decision.after.record)["felt_label"]] += 1
             if decision.shown is not None:
                 self.units.update(decision.shown.units.keys())
 
