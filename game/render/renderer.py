@@ -38,6 +38,7 @@ __all__ = ["Renderer"]
 
 _Drawing = CharacterDrawing | AvatarDrawing
 
+_STALE_S = 0.1  # a shadow map older than this is drawn anew
 _FACE_AT = (0.0, 1.2, 0.1)  # about where the face is, m
 
 
@@ -93,7 +94,8 @@ class Renderer(Owner):
         # In a window, a camera that keeps moving is drawn with fewer samples; single pictures are always finished.
         self.drafts = device.windowed
         self._frames = 0
-        self._light: LightBox | None = None  # for which the shadow map was drawn
+        self._light: LightBox | None = None  # for which the shadow map was drawn …
+        self._cast_s = 0.0  # … and when
         self._shown: moderngl.Framebuffer | None = None
         self.times = FrameTimes(device)
         self.scale = 1.0  # share of the picture's sides at which the scene is drawn; the interface never is smaller
@@ -291,8 +293,11 @@ class Renderer(Owner):
                 return None
             if isinstance(character, AvatarDrawing) and view.look is not None:
                 character.look(view.look)
-            cast = self._frames % self.level.shadow_every == 0 or self._light is not light
+            # Frames far apart, as those of a film strip, have each a shadow of their own.
+            late = not 0.0 <= view.time_s - self._cast_s <= _STALE_S
+            cast = late or self._frames % self.level.shadow_every == 0 or self._light is not light
             self._light = light
+            self._cast_s = view.time_s if cast else self._cast_s
             return character.pose(view.skin_matrices, world_to_clip, targets.size, whole=not view.show_stall, cast=cast)
 
     def _crowd_shown(self, view: FrameView) -> bool:

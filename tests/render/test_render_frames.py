@@ -275,3 +275,16 @@ def test_specks_drift_with_the_time_and_only_with_it(renderer, view):
     assert np.array_equal(now, shot(renderer, view))
     alone = replace(view, show_stall=False)
     assert np.array_equal(shot(renderer, alone), shot(renderer, replace(alone, time_s=40.0)))
+
+
+@pytest.mark.parametrize("frames_before", [1, 2])
+def test_a_picture_much_later_has_a_shadow_of_its_own(renderer, view, frames_before):
+    """The map is drawn every other frame: between two pictures of a strip it would be that of another pose."""
+    for _ in range(frames_before):
+        shot(renderer, view)
+    low = view.skin_matrices.copy()
+    low[:, 1, 3] -= 0.25
+    later = replace(view, skin_matrices=low, time_s=view.time_s + 9.0)
+    first, again, once_more = (shot(renderer, later) for _ in range(3))
+    assert np.array_equal(first, again)
+    assert np.array_equal(again, once_more)
