@@ -30,6 +30,8 @@ __all__ = ["PEOPLE", "Cast", "Known", "Passersby", "load_cast"]
 Floats = NDArray[np.floating[Any]]
 
 PEOPLE = 8
+CHILD, CHILDREN_EVERY = 3, 4
+"""The fourth is a child, and so is every fourth after."""
 LOUD = 0.6
 """A reaction that shows so strongly on the shopkeeper's face …"""
 LOOK_S = 2.6
@@ -41,11 +43,12 @@ _MOODS = ("neutral", "joy", "joy", "neutral", "surprise", "neutral", "sadness", 
 
 @dataclass(frozen=True, eq=False)
 class Cast:
-    """Who walks by: a look and a rig each, sizes (n,) as a share of the model's."""
+    """Who walks by: a look and a rig each, sizes (n,) as a share of the model's, girth (n,): width for that size."""
 
     looks: Sequence[CrowdLook]
     rigs: Sequence[Rig]
     size: Floats
+    girth: Floats
     tall_m: Floats
 
 
@@ -65,13 +68,16 @@ def load_cast(own: str, folder: Path = ASSETS / "characters", count: int = PEOPL
         if path not in known:
             known[path] = (load_crowd_mesh(path), _unsprung(load_rig(path)))
     meshes, rigs = [known[path][0] for path in files], [known[path][1] for path in files]
-    size = 0.86 + 0.20 * np.random.default_rng(11).random(count)
+    rng = np.random.default_rng(11)
+    size, girth = 0.86 + 0.20 * rng.random(count), 0.84 + 0.26 * rng.random(count)
+    size[CHILD::CHILDREN_EVERY] *= 0.72
     which = [who % len(files) for who in range(count)]
     tall = np.array([float(mesh.position[:, 1].max()) for mesh in meshes])
     return Cast(
         looks=[dressed(meshes[k], who) for who, k in enumerate(which)],
         rigs=[rigs[k] for k in which],
         size=size,
+        girth=girth,
         tall_m=tall[which] * size,
     )
 
@@ -155,7 +161,8 @@ class Passersby:
         speed = np.array([place.speed for place in places])
         phase = time_s * CADENCE_HZ / size + 0.37 * np.arange(self._count)
         pose = walk(pose, phase, speed / CADENCE_HZ, np.array([place.walking for place in places]))
-        world = np.stack([_world(place, float(s)) for place, s in zip(places, size, strict=True)])
+        builds = zip(places, size.tolist(), self._cast.girth.tolist(), strict=True)
+        world = np.stack([_world(*build) for build in builds])
         matrices: dict[int, NDArray[np.float32]] = {}
         for rig, rows in self._rows:
             skin = rig.skin_matrices(rig.joint_matrices(_only(pose, rows)))
@@ -173,6 +180,6 @@ def _only(pose: Pose, rows: NDArray[np.intp]) -> Pose:
     return Pose(pose.rotation[rows], pose.root[rows], pose.gaze[rows], pose.blink[rows], pose.breath[rows])
 
 
-def _world(place: Place, size: float) -> NDArray[np.float32]:
-    c, s = size * np.cos(place.yaw_rad), size * np.sin(place.yaw_rad)
+def _world(place: Place, size: float, girth: float) -> NDArray[np.float32]:
+    c, s = size * girth * np.cos(place.yaw_rad), size * girth * np.sin(place.yaw_rad)
     return np.array([[c, 0, s, place.x], [0, size, 0, 0], [-s, 0, c, place.z], [0, 0, 0, 1]], dtype=np.float32)

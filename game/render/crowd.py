@@ -20,7 +20,9 @@ __all__ = ["CrowdLook", "CrowdMesh", "CrowdView", "dressed", "load_crowd_mesh"]
 Floats = NDArray[np.floating[Any]]
 
 CELL_M = 0.05
-# Hair and cloth of passers-by: a colour for the hair, a turn of the clothes' hue, how grey they are.
+DRESS = ("skin", "hair", "top", "legs", "shoes", "hat")
+_ANKLE_M, _WAIST_M, _NECK_M = 0.10, 0.50, 1.20
+# Hair, skin and cloth of passers-by.
 _HAIR = np.array(
     [
         (0.26, 0.20, 0.20),
@@ -31,12 +33,23 @@ _HAIR = np.array(
         (0.70, 0.68, 0.66),
     ]
 )
+_SKIN = np.array([(1.0, 1.0, 1.0), (0.93, 0.86, 0.80), (1.0, 0.98, 0.97), (0.72, 0.60, 0.53), (0.97, 0.92, 0.88)])
+"""Shares of the model's own skin."""
+_TOP = np.array(
+    [
+        (0.79, 0.42, 0.36), (0.37, 0.52, 0.66), (0.90, 0.72, 0.40), (0.46, 0.60, 0.45),
+        (0.93, 0.88, 0.80), (0.56, 0.43, 0.58), (0.83, 0.57, 0.52), (0.30, 0.40, 0.50),
+    ]
+)  # fmt: skip
+_LEGS = np.array([(0.33, 0.38, 0.50), (0.62, 0.53, 0.43), (0.28, 0.27, 0.32), (0.50, 0.47, 0.44), (0.43, 0.33, 0.32)])
+_SHOES = np.array([(0.38, 0.27, 0.22), (0.90, 0.87, 0.82), (0.25, 0.24, 0.28)])
+_PLAIN = 0.16  # the saturation from which on cloth is taken to have a colour; white and grey cloth stays as it is
 
 
 @dataclass(frozen=True, eq=False)
 class CrowdMesh:
     """position, normal: (v, 3); joint: (v,); face_uv: (v, 2), −1 where there is no face; lit, shade: (v, 3) as
-    modelled; dress: (v,) 0 skin, 1 hair, 2 clothes; triangle: (t, 3)."""
+    modelled; dress: (v,) what it is, as DRESS; triangle: (t, 3)."""
 
     position: Floats
     normal: Floats
@@ -78,7 +91,7 @@ def load_crowd_mesh(vrm: Path) -> CrowdMesh:
         face_uv=np.concatenate([_face_uv(part) for part in parts]),
         lit=np.concatenate([np.tile(part.material.lit, (len(part.position), 1)) for part in parts]),
         shade=np.concatenate([np.tile(part.material.shade, (len(part.position), 1)) for part in parts]),
-        dress=np.concatenate([np.full(len(part.position), _dress(part)) for part in parts]),
+        dress=np.concatenate([_dress(part) for part in parts]),
         triangle=np.concatenate(
             [part.triangle.astype(np.int32) + at for part, at in zip(parts, first[:-1].tolist(), strict=True)]
         ).astype(np.int32),
@@ -88,29 +101,46 @@ def load_crowd_mesh(vrm: Path) -> CrowdMesh:
 def dressed(mesh: CrowdMesh, who: int) -> CrowdLook:
     """The mesh as the ``who``-th passer-by wears it."""
     draw = np.random.default_rng([0xD2E55, who]).random(4)
-    hair = _HAIR[who % len(_HAIR)]
-    # Each person's hue is well away from the next one's; the golden angle spreads any number of them.
-    turn = _hue_turn(2.39996 * (who + 1), 0.62 + 0.25 * draw[0])
+    # Neighbours in the row of people never wear the same: the first choice goes round, the others are drawn.
+    own = {
+        "hair": _HAIR[who % len(_HAIR)],
+        "top": _TOP[(who * 3) % len(_TOP)],
+        "hat": _TOP[(who * 3 + 4) % len(_TOP)],
+        "legs": _LEGS[int(draw[0] * len(_LEGS))],
+        "shoes": _SHOES[int(draw[1] * len(_SHOES))],
+    }
+    skin = _SKIN[int(draw[2] * len(_SKIN))]
     colours = []
-    for given, dark in ((mesh.lit, 1.0), (mesh.shade, 0.62)):
-        colour = np.where((mesh.dress == 2)[:, None], given @ turn.T, given)
-        colour = np.where((mesh.dress == 1)[:, None], hair * dark, colour)
+    for given, dark in ((mesh.lit, 1.0), (mesh.shade, 0.66)):
+        colour = given * np.where((mesh.dress == DRESS.index("skin"))[:, None], skin, 1.0)
+        for name, wanted in own.items():
+            part = mesh.dress == DRESS.index(name)
+            colour[part] = wanted * dark if name in ("hair", "shoes") else _recoloured(mesh.lit[part], wanted) * dark
         colours.append(grade(np.clip(colour, 0.0, 1.0)))
     return CrowdLook(mesh, colours[0], colours[1])
 
 
-def _hue_turn(angle_rad: float, saturation: float) -> Floats:
-    """(3, 3) turns hues about the grey axis and scales how far colours are from it."""
-    c, s, third = np.cos(angle_rad), np.sin(angle_rad), 1.0 / 3.0
-    root = np.sqrt(third)
-    cross = root * np.array([[0.0, -1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 1.0, 0.0]])
-    turn = c * np.eye(3) + s * cross + (1.0 - c) * third
-    grey = np.full((3, 3), third)
-    return np.asarray(grey + (turn - grey) * saturation)
+def _recoloured(given: Floats, wanted: Floats) -> Floats:
+    """Cloth (v, 3) in another colour: as light or dark against the rest as it was, white where it was white."""
+    if not len(given):
+        return given
+    light, span = given.mean(axis=1), np.ptp(given, axis=1)
+    coloured = span > _PLAIN
+    usual = float(np.median(light[coloured])) if coloured.any() else 1.0
+    new = wanted * np.clip(light / max(usual, 1e-3), 0.6, 1.25)[:, None]
+    return np.where(coloured[:, None], new, given)
 
 
-def _dress(part: Part) -> int:
-    return {"skin": 0, "face": 0, "hair": 1}.get(part.material.kind, 2)
+def _dress(part: Part) -> NDArray[np.intp]:
+    """(v,) what every vertex of a part is, told by its material and by how high it stands."""
+    kind = {"skin": "skin", "face": "skin", "hair": "hair"}.get(part.material.kind)
+    if kind is not None:
+        return np.full(len(part.position), DRESS.index(kind))
+    height = part.position[:, 1]
+    cloth = "legs" if float(height.mean()) < _WAIST_M else "top"
+    names = np.full(len(height), DRESS.index(cloth))
+    names[height < _ANKLE_M], names[height > _NECK_M] = DRESS.index("shoes"), DRESS.index("hat")
+    return names
 
 
 def _main_joint(part: Part) -> NDArray[np.uint8]:

@@ -17,6 +17,7 @@ from game.app.strolls import LAP_S, Strolls
 from game.core import MissingPart
 from game.embos import Planner, UnitLibrary
 from game.render import Device, FrameView, Renderer, level_named
+from game.render.crowd import DRESS
 
 
 @pytest.fixture(scope="module")
@@ -144,3 +145,16 @@ def test_the_crowd_is_seen_behind_the_stall_only_and_not_at_the_lowest_level(ass
     assert rows.max() < 300, "the table hides their feet"
     assert rows.min() > 40, "nobody is a giant"
     assert not changed[305:].any()
+
+
+def test_no_two_neighbours_look_alike_and_white_cloth_stays_white(cast) -> None:
+    looks = cast.looks
+    for one, other in zip(looks, looks[2:], strict=False):  # every second wears the same model
+        assert one.mesh is other.mesh
+        assert np.abs(one.lit - other.lit).max() > 0.15
+    mesh = looks[0].mesh
+    white = (mesh.lit.min(axis=1) > 0.8) & (mesh.dress == DRESS.index("top"))
+    assert white.any()
+    assert np.ptp(looks[0].lit[white], axis=1).max() < 0.3
+    assert cast.tall_m[3] < 0.8 * np.median(cast.tall_m), "a child"
+    assert np.ptp(cast.girth) > 0.1
