@@ -15,7 +15,7 @@ missing bones) is the rig's (skinning.py).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ _LOW_BACK_M, _HIGH_BACK_M = (-0.08, -0.01), (-0.03, 0.09)
 same for a high one, which a belly that leans over the edge takes along."""
 _TOGETHER_M, _APART_M = 0.14, 0.34
 """Palms nearer than the first keep their distance, further apart than the second each goes its own way."""
-_REACH_SOFT, _REACH_FULL = 0.985, 0.999
+_REACH = (0.985, 0.999)
 """Shares of an arm's length between which a reach is clamped that only this body lacks."""
 _CLEAR = 1.35
 """Radii of a body's part beyond which a palm is out of it."""
@@ -281,11 +281,7 @@ def _hand_share(places: Mapping[str, Floats], arm: float) -> float:
 
 def _limbs(lengths: Floats) -> limbs.Limbs:
     """lengths: (2, 4) of upper and lower bones. A pose's reach was clamped when it was made; it is not once more."""
-    made = limbs.limbs_of(lengths[0], lengths[1], np.zeros(4, dtype=bool))
-    full = lengths.sum(0)[:2]
-    knee, room = made.knee.copy(), made.room.copy()
-    knee[:2, 0], room[:2, 0] = _REACH_SOFT * full, (_REACH_FULL - _REACH_SOFT) * full
-    return replace(made, knee=knee, room=room)
+    return limbs.limbs_of(lengths[0], lengths[1], np.array([_REACH, _REACH, limbs.STRAIGHT, limbs.STRAIGHT]))
 
 
 def _places(where: Mapping[str, Floats], size: BodySize | None, arm: Floats, hand: float) -> tuple[Floats, Floats]:

@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["HINGE_WEIGHT_M", "REACH_FULL", "REACH_SOFT", "Limbs", "limbs_of", "solve_limbs"]
+__all__ = ["ARM", "HINGE_WEIGHT_M", "STRAIGHT", "Limbs", "limbs_of", "solve_limbs"]
 
 Floats = NDArray[np.floating[Any]]
 
-REACH_SOFT, REACH_FULL = 0.93, 0.985
+ARM = (0.93, 0.985)
 """Shares of an arm's length between which its reach is softly clamped (MOTION.md, contacts)."""
-STRAIGHT_SOFT, STRAIGHT_FULL = 0.999, 0.9998
+STRAIGHT = (0.999, 0.9998)
 """The same for legs, which stand straight at rest."""
 HINGE_WEIGHT_M = 1.5e-3
 """How much of the rest hinge is added to the bent limb's own normal (metres, upper bone × direction), which vanishes
@@ -84,11 +84,10 @@ class Limbs:
     divide: Floats
 
 
-def limbs_of(upper_m: Floats, lower_m: Floats, soft: NDArray[np.bool_]) -> Limbs:
-    """upper_m, lower_m: (K,) bone lengths; soft: (K,) True for arms."""
-    full = upper_m + lower_m
-    knee = np.where(soft, REACH_SOFT, STRAIGHT_SOFT) * full
-    most = np.where(soft, REACH_FULL, STRAIGHT_FULL) * full
+def limbs_of(upper_m: Floats, lower_m: Floats, reach: Floats) -> Limbs:
+    """upper_m, lower_m: (K,) bone lengths; reach: (K, 2) shares of both together, where a limb begins to give way and
+    where it is as long as it gets."""
+    knee, most = (upper_m + lower_m) * reach.T
     more, both = upper_m**2 - lower_m**2, upper_m**2 + lower_m**2
     divide = np.stack([0.5 / upper_m, 0.5 / (upper_m * lower_m)])
     return Limbs(

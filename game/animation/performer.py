@@ -36,7 +36,8 @@ body does (the face is another stage's); ``face``: the body stands still at neut
 
 _NEUTRAL = np.eye(len(EMOTIONS))[EMOTIONS.index("neutral")]
 _EYES = np.array(HEAD_CENTRE_OFFSET, dtype=np.float32)
-_LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], np.array([True, True, False, False]))
+_REACH = np.array([limbs.ARM, limbs.ARM, limbs.STRAIGHT, limbs.STRAIGHT])
+_LIMBS = limbs.limbs_of(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], _REACH)
 _HANDS = slice(contacts.GOALS.start, contacts.GOALS.start + 2)
 _BONES = np.append(contacts.slot("hips") + figure.BONES, np.arange(contacts.GOALS.start, contacts.GOALS.stop))
 _HEAD, _CHEST = contacts.slot("head"), contacts.slot("chest")

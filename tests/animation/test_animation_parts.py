@@ -31,8 +31,8 @@ def test_bilinear_maps_are_the_quaternion_algebra() -> None:
     np.testing.assert_allclose(np.abs((back * half_turns).sum(-1)), 1.0, atol=1e-6)
 
 
-ARM = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([True]))
-LEG = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([False]))
+ARM = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([limbs.ARM]))
+LEG = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([limbs.STRAIGHT]))
 
 
 def solved(elbow_deg: float, target: object, kind: limbs.Limbs = LEG) -> tuple[np.ndarray, np.ndarray]:
@@ -59,12 +59,22 @@ def test_a_limb_that_is_there_stays_as_it_is() -> None:
     np.testing.assert_allclose(np.abs(solved(70.0, None, ARM)[1][:, 3]), 1.0, atol=1e-6)
 
 
+@pytest.mark.parametrize("share", [limbs.ARM, limbs.STRAIGHT, (0.985, 0.999)])
+def test_a_reach_ends_softly_and_never_runs_ahead_of_what_is_asked(share: tuple[float, float]) -> None:
+    full = 0.422
+    asked = np.linspace(0.9, 1.1, 200)
+    kind = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([share]))
+    got = np.array([np.linalg.norm(solved(40.0, (a * full, 0, 0), kind)[0]) for a in asked]) / full
+    assert got.max() < share[1] + 1e-3
+    assert (np.diff(got) < np.diff(asked) + 4e-4).all()
+
+
 def test_reach_is_clamped_softly() -> None:
     full = 0.422
     distances = np.linspace(0.85, 1.3, 60) * full
     ratio = np.array([np.linalg.norm(solved(40.0, (d, 0, 0), ARM)[0]) for d in distances]) / full
     np.testing.assert_allclose(ratio[distances < 0.92 * full], (distances / full)[distances < 0.92 * full], atol=3e-3)
-    assert ratio.max() < limbs.REACH_FULL + 1e-3
+    assert ratio.max() < limbs.ARM[1] + 1e-3
     assert (np.diff(ratio) > -1e-3).all()
 
 
