@@ -41,7 +41,7 @@ class Pool:
         self.acts, self.count, self.fair = tuple(acts), count, fair
         self._used = sum([act.used for act in acts])
         self._gone = sum([act.gone for act in acts])
-        self._rounds: Few[int, Round] = Few(1024)
+        self._rounds: Few[int, Round] = Few(256)
 
     def round(self, chosen: int, seen: int) -> Round:
         """What is left of it where so much was chosen in the talk and seen at the stall."""

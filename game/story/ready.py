@@ -37,7 +37,8 @@ Pair = tuple[str, str]
 
 _FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
 """Names in braces that mean the same throughout all talks about an item."""
-_MOST_KEPT = 256
+_MOST_KEPT = 128
+_MOST_WORDS = 16
 
 Key = TypeVar("Key")
 Kept = TypeVar("Kept")
@@ -88,9 +89,9 @@ class ReadyLine:
         self.stimulus = Stimulus(line.feel, line.id) if line.feel else None
         self.pair = (choice, line.id)
         self.fixed: Spoken | None = None
-        self.spoken: Few[tuple[Value | None, ...], Spoken] = Few()
+        self.spoken: Few[tuple[Value | None, ...], Spoken] = Few(_MOST_WORDS)
         self.offered: Choice | None = None
-        self.option: Few[tuple[Value | None, ...], Choice] = Few()
+        self.option: Few[tuple[Value | None, ...], Choice] = Few(_MOST_WORDS)
 
 
 class Left(Generic[Item]):
