@@ -6,7 +6,8 @@ at rest exactly in the new framing, and is a function of time alone, so 30, 60 a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from math import radians, tan
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from game.render import HERO, Camera
 
-__all__ = ["ESTABLISHING", "SHOTS", "Glide", "camera_of", "numbers_of", "stand"]
+__all__ = ["ESTABLISHING", "LARGE_TEXT_DROP", "SHOTS", "Glide", "camera_of", "framing", "numbers_of", "stand"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -31,6 +32,22 @@ covers the right half. close: the face fills the frame. glance: down to the hand
 
 ESTABLISHING = Camera((-0.62, 1.34, 4.05), (-0.02, 1.0, 0.0), 30.0)
 """First sight of a stall, from where one comes walking."""
+
+
+LARGE_TEXT_DROP = 0.034
+"""Of the picture's height, by which the camera stands lower where letters are twice as large …"""
+ABOVE_WORDS = frozenset({"talk", "side"})
+"""… in shots that show hands above the box of words, which grows with the letters, and have room above the head."""
+
+
+def framing(shot: str, large_text: float = 0.0) -> Camera:
+    """The camera of a shot. large_text: how far letters are enlarged, 0 as drawn, 1 twice as large."""
+    camera = SHOTS[shot]
+    if shot not in ABOVE_WORDS or large_text == 0.0:
+        return camera
+    drop_m = LARGE_TEXT_DROP * large_text * 2.0 * camera.distance_m(camera.target) * tan(radians(camera.fov_deg / 2.0))
+    (ex, ey, ez), (tx, ty, tz) = camera.eye, camera.target
+    return replace(camera, eye=(ex, ey - drop_m, ez), target=(tx, ty - drop_m, tz))
 
 
 def numbers_of(camera: Camera) -> Floats:

@@ -16,7 +16,7 @@ from game.app.cards import CARD_CAMERA
 from game.app.figure6 import CAMERA as FIGURE_CAMERA
 from game.app.passersby import load_cast
 from game.app.rig import load_rig
-from game.app.shots import SHOTS
+from game.app.shots import LARGE_TEXT_DROP, SHOTS, framing
 from game.app.stage import StageAssets
 from game.app.strolls import LANES_M, OUT_X_M
 from game.app.studio import CAMERAS
@@ -28,7 +28,8 @@ from game.render import Camera
 
 HEAD = REFERENCE.index["head"]
 ASPECTS = (3 / 4, 1.0, 4 / 3, 16 / 9, 21 / 9)
-EVERY = {**CAMERAS, "home": SHOTS["home"], "tell": TELL_CAMERA, "card": CARD_CAMERA, "figure": FIGURE_CAMERA}
+LARGE = {f"{name} large": framing(name, 1.0) for name in ("talk", "side")}
+EVERY = {**CAMERAS, **LARGE, "home": SHOTS["home"], "tell": TELL_CAMERA, "card": CARD_CAMERA, "figure": FIGURE_CAMERA}
 CORNERS = np.array(list(itertools.product((-1, 0, 1), (0, 1), (-1, 0, 1))), float)
 
 
@@ -100,3 +101,18 @@ def test_nobody_who_walks_past_loses_the_head() -> None:
     places = np.array([(x, top, z) for x in (-OUT_X_M, 0.0, OUT_X_M) for z in LANES_M])
     for (shot, camera), aspect in itertools.product(EVERY.items(), ASPECTS):
         assert seen_at(camera, places, aspect)[:, 1].max() < 0.95, shot
+
+
+def test_large_letters_leave_the_hands_to_be_seen_and_other_shots_as_they_are() -> None:
+    hand = np.array([0.2, 0.66, 0.35, 1.0])
+
+    def height(camera: Camera) -> float:
+        clip = camera.view_projection(16.0 / 9.0) @ hand
+        return float(clip[1] / clip[3]) / 2.0
+
+    for shot in ("talk", "side"):
+        risen = height(framing(shot, 1.0)) - height(SHOTS[shot])
+        assert risen == pytest.approx(LARGE_TEXT_DROP, rel=0.25), shot
+        assert framing(shot) is SHOTS[shot]
+    assert framing("close", 1.0) is SHOTS["close"]
+    assert framing("offer", 1.0) is SHOTS["offer"]
