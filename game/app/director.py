@@ -98,8 +98,8 @@ def moment_of(world: World, scene: str, *, place: str = "", offering: bool = Fal
     )
 
 
-def direct(state: Direction, moment: Moment, *, reduced_motion: bool = False, large_text: float = 0.0) -> Direction:
-    """One tick: weigh a new reaction, choose the shot, begin a glide where it is another one. large_text: see
+def direct(state: Direction, moment: Moment, *, reduced_motion: bool = False, text_scale: float = 1.0) -> Direction:
+    """One tick: weigh a new reaction, choose the shot, begin a glide where it is another one. text_scale: see
     ``framing``."""
     if moment.time_s < state.time_s:  # another world has begun
         state = start_direction(state.place)
@@ -115,7 +115,7 @@ def direct(state: Direction, moment: Moment, *, reduced_motion: bool = False, la
         length_s = ARRIVAL_S
     if reduced_motion:
         length_s = after_s = 0.0
-    glide = state.glide.toward(framing(shot, large_text), moment.time_s, length_s, after_s=after_s)
+    glide = state.glide.toward(framing(shot, text_scale), moment.time_s, length_s, after_s=after_s)
     return replace(state, glide=glide, shot=shot, place=moment.place, still=reduced_motion)
 
 

@@ -40,9 +40,9 @@ ABOVE_WORDS = frozenset({"talk", "side"})
 """… in shots that show hands above the box of words, which grows with the letters, and have room above the head."""
 
 
-def framing(shot: str, large_text: float = 0.0) -> Camera:
-    """The camera of a shot. large_text: how far letters are enlarged, 0 as drawn, 1 twice as large."""
-    camera = SHOTS[shot]
+def framing(shot: str, text_scale: float = 1.0) -> Camera:
+    """The camera of a shot. text_scale: how large letters are, 1 as drawn, 2 twice as large."""
+    camera, large_text = SHOTS[shot], min(max(text_scale - 1.0, 0.0), 1.0)
     if shot not in ABOVE_WORDS or large_text == 0.0:
         return camera
     drop_m = LARGE_TEXT_DROP * large_text * 2.0 * camera.distance_m(camera.target) * tan(radians(camera.fov_deg / 2.0))

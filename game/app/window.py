@@ -277,9 +277,8 @@ class Window:
             session.journal.shows(session, screen.scene)
         offering = isinstance(screen, TalkScreen) and screen.offering
         moment = moment_of(session.world, screen.scene, place=session.stall, offering=offering)
-        settings = session.settings
-        large_text = min(max(settings.ui_scale - 1.0, 0.0), 1.0)
-        self.direction = direct(self.direction, moment, reduced_motion=settings.reduced_motion, large_text=large_text)
+        calm, scale = session.settings.reduced_motion, session.settings.ui_scale
+        self.direction = direct(self.direction, moment, reduced_motion=calm, text_scale=scale)
 
     def advance(self, elapsed_s: float) -> None:
         """Let the game run for some real time, in whole ticks; in photo mode time stands still.

@@ -28,7 +28,7 @@ from game.render import Camera
 
 HEAD = REFERENCE.index["head"]
 ASPECTS = (3 / 4, 1.0, 4 / 3, 16 / 9, 21 / 9)
-LARGE = {f"{name} large": framing(name, 1.0) for name in ("talk", "side")}
+LARGE = {f"{name} large": framing(name, 2.0) for name in ("talk", "side")}
 EVERY = {**CAMERAS, **LARGE, "home": SHOTS["home"], "tell": TELL_CAMERA, "card": CARD_CAMERA, "figure": FIGURE_CAMERA}
 CORNERS = np.array(list(itertools.product((-1, 0, 1), (0, 1), (-1, 0, 1))), float)
 
@@ -111,8 +111,8 @@ def test_large_letters_leave_the_hands_to_be_seen_and_other_shots_as_they_are() 
         return float(clip[1] / clip[3]) / 2.0
 
     for shot in ("talk", "side"):
-        risen = height(framing(shot, 1.0)) - height(SHOTS[shot])
+        risen = height(framing(shot, 2.0)) - height(SHOTS[shot])
         assert risen == pytest.approx(LARGE_TEXT_DROP, rel=0.25), shot
         assert framing(shot) is SHOTS[shot]
-    assert framing("close", 1.0) is SHOTS["close"]
-    assert framing("offer", 1.0) is SHOTS["offer"]
+    assert framing("close", 2.0) is SHOTS["close"]
+    assert framing("offer", 2.0) is SHOTS["offer"]
