@@ -137,6 +137,8 @@ def test_a_compressed_log_says_the_same(straight, tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="needs signals")
 def test_ctrl_c_stops_cleanly_with_what_is_done(tmp_path: Path) -> None:
+    # A suite that runs in a shell's background inherits a deaf ear for Ctrl-C, and would hand it on.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     path = tmp_path / "log.jsonl"
     command = [sys.executable, str(ROOT / "run_game.py"), "autoplay", "--episodes", "100000", "--workers", "2"]
     run = subprocess.Popen(
