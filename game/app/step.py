@@ -29,8 +29,8 @@ from game.story import Spoken, TimedText
 from game.story.timing import CHARS_PER_S
 
 __all__ = [
-    "FELT_HALF_LIFE_S", "PEAK_S", "SHOWN_HALF_LIFE_S", "STAGES", "StepAssets", "feelings_after", "leaked_emotion",
-    "line_cues", "new_world", "reaction_to", "speech_stage", "step", "targets_of", "timed_line",
+    "FELT_HALF_LIFE_S", "PEAK_S", "SHOWN_HALF_LIFE_S", "STAGES", "StepAssets", "feelings_after", "forget_planners",
+    "leaked_emotion", "line_cues", "new_world", "reaction_to", "speech_stage", "step", "targets_of", "timed_line",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
@@ -204,6 +204,13 @@ def _cues(
     known = np.frombuffer(shown, dtype=bool)
     cues = words.with_beats(library, text, timed.char_s, language, shown=known, stress=planner.config.stress)
     return cues if named is None else cues.adding(library, named, min(NAMED_GESTURE_S, timed.length_s))
+
+
+def forget_planners() -> None:
+    """Let go of what is remembered of planners that are asked no more: it would keep their whole library."""
+    _called_up.cache_clear()
+    _cues.cache_clear()
+    habit_of.cache_clear()
 
 
 def feeling_stage(assets: StepAssets, world: World, intent: Intent) -> World:

@@ -10,6 +10,7 @@ from pathlib import Path
 from game.animation import KnownUnits, Performer
 from game.app.reload import Watch
 from game.app.session import Session
+from game.app.step import forget_planners
 from game.core.errors import BadInput, GameError
 from game.core.paths import ASSETS
 from game.embos import KnownClips, Planner, UnitLibrary, load_config
@@ -66,6 +67,7 @@ def take_up_units(session: Session, planner: Planner, performer: Performer) -> N
     speech = None if world.speech is None else replace(world.speech, cues=None)
     session.world = replace(world, body=body, speech=speech)
     _equip(session, planner, performer)
+    forget_planners()
     session.designed = True
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import shutil
+import weakref
 from dataclasses import replace
 from pathlib import Path
 
@@ -49,6 +51,7 @@ def test_new_units_are_taken_up_and_broken_ones_leave_the_old_going(opened: Sess
     session = opened
     session.open_day()
     session.begin_talk("vase")
+    played = weakref.ref(session.assets.planner)
     turned = []
     for _ in range(40):
         session.world = step(session.assets, session.world, Intent())
@@ -59,6 +62,8 @@ def test_new_units_are_taken_up_and_broken_ones_leave_the_old_going(opened: Sess
     first = session.assets.planner
     assert watch.said.endswith("motion units taken up")
     assert first.library.clips is not None
+    gc.collect()
+    assert played() is None, "what is played no more is kept nowhere"
 
     units, transitions = read_units(shop / "units.yaml")
     kept = [u for u in units if u.name != "nod"]
