@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from game.app.talk import TalkAssets
-from game.core.errors import BadInput
+from game.core.errors import BadInput, Where
 from game.core.paths import DIALOGUE
 from game.emotion import feeling_rules_from
 from game.formats.yaml_source import load_yaml, nearest
@@ -20,7 +20,7 @@ def stall_path(name: str) -> Path:
     if name.endswith((".yaml", ".yml")):
         path = Path(name)
         if not path.is_file():
-            raise BadInput("stall", expected="a dialogue file that exists", seen=name)
+            raise BadInput("stall", where=Where(path), expected="a dialogue file that exists", seen="none")
         return path
     known = {path.stem: path for path in shipped_stalls()}
     if name not in known:

@@ -22,7 +22,7 @@ from pathlib import Path
 from game.app.autoplay.coverage import KINDS, Reached, covered
 from game.app.autoplay.runs import Run
 from game.app.autoplay.tally import Interval, Tally
-from game.core.errors import BadInput
+from game.core.errors import BadInput, Where
 from game.formats.yaml_source import Node, load_yaml
 
 __all__ = ["Finding", "Requirement", "Requirements", "check_played", "judge", "load_requirements"]
@@ -70,7 +70,7 @@ class Requirements:
 def load_requirements(path: Path) -> Requirements:
     """Read thresholds. Raises BadInput with file:line:col."""
     if not path.is_file():
-        raise BadInput("--require", expected="a file that exists", seen=str(path))
+        raise BadInput("--require", where=Where(path), expected="a file that exists", seen="none")
     root = load_yaml(path).only("visits", "coverage", "balance")
     visits, coverage, balance = root.get("visits"), root.get("coverage"), root.get("balance")
     shares = {}

@@ -64,7 +64,7 @@ class OwnPolicy:
     def load(path: Path) -> OwnPolicy:
         """Check a file without running it. Raises BadInput with the line that is not allowed."""
         if not path.is_file():
-            raise BadInput("policy", expected="a Python file that exists", seen=str(path))
+            raise BadInput("policy", where=Where(path), expected="a Python file that exists", seen="none")
         source = decode_utf8(read_bytes(path, max_bytes=_MAX_BYTES, what="policy"), path)
         try:
             tree = ast.parse(source, str(path))

@@ -8,7 +8,7 @@ from pathlib import Path
 from game.app.policies.strategy import money
 from game.app.policies.views import Line, Table
 from game.app.talk import Choice
-from game.core.errors import BadInput
+from game.core.errors import BadInput, Where
 from game.formats.yaml_source import Node, load_yaml
 
 __all__ = ["ScriptedMove", "ScriptedPlayer", "load_moves"]
@@ -28,7 +28,7 @@ class ScriptedMove:
 def load_moves(path: Path) -> tuple[ScriptedMove, ...]:
     """Read a list such as ``[{act: praise, share: 0.6}, {choice: offer, offer: ask}]``. Raises BadInput."""
     if not path.is_file():
-        raise BadInput("policy script", expected="a file that exists", seen=str(path))
+        raise BadInput("policy script", where=Where(path), expected="a file that exists", seen="none")
     return tuple(_move(node) for node in load_yaml(path).only("moves")["moves"].as_list())
 
 
