@@ -68,28 +68,8 @@ class GestureCues:
         )
 
     @classmethod
-    def from_line(
-        cls,
-        library: UnitLibrary,
-        text: str,
-        char_s: Sequence[float],
-        language: str,
-        *,
-        shown: NDArray[np.bool_],
-        stress: StressRule,
-    ) -> GestureCues:
-        """Cues of a line with its timing: words that call up gestures, and beats on stressed words between them.
-
-        char_s: seconds of each character, on any clock; shown: (G,) gestures the present feeling knows, the others
-        compete with no beat.
-        """
-        return cls.from_words(library, text, char_s, language).with_beats(
-            library, text, char_s, language, shown=shown, stress=stress
-        )
-
-    @classmethod
     def from_words(cls, library: UnitLibrary, text: str, char_s: Sequence[float], language: str) -> GestureCues:
-        """Cues of a line with its timing, without beats."""
+        """Cues of a line: words that call up gestures. char_s: seconds of each character, on any clock."""
         return cls.from_tokens(library, _tokens(text, char_s, language), language)
 
     def with_beats(
@@ -102,7 +82,11 @@ class GestureCues:
         shown: NDArray[np.bool_],
         stress: StressRule,
     ) -> GestureCues:
-        """With beats on stressed words between these; see ``from_line``."""
+        """With beats on stressed words between these.
+
+        char_s: seconds of each character, on the same clock; shown: (G,) gestures the present feeling knows, the others
+        compete with no beat.
+        """
         taken_s = self.time_s[shown[self.gesture]].tolist() if self.gesture.size else []
         beats = [column for column in beat_columns(library, stress) if shown[column]]
         moments = stressed_moments(text, char_s, language, stress, taken_s) if beats else []

@@ -68,16 +68,17 @@ def test_a_line_gets_its_own_gestures_and_beats_between_them() -> None:
     )
     text = "That kettle has crossed the wide ocean, really"
     char_s = [0.1 * i for i in range(len(text))]
+    words = GestureCues.from_words(library, text, char_s, "en")
     for knows_point in (True, False):
         shown = np.array([knows_point, True])
-        cues = GestureCues.from_line(library, text, char_s, "en", shown=shown, stress=RULE)
+        cues = words.with_beats(library, text, char_s, "en", shown=shown, stress=RULE)
         own = dict(zip(cues.gesture.tolist(), cues.time_s.tolist(), strict=True))
         assert own[0] == pytest.approx(0.5)  # its word is heard even where the feeling does not know the gesture
         beats = cues.time_s[cues.gesture == 1]
         assert beats.max() == pytest.approx(4.0)
         near = np.abs(beats - 0.5).min()
         assert (near > RULE.clear_s - 1e-9) == knows_point
-    none = GestureCues.from_line(library, text, char_s, "en", shown=np.array([True, False]), stress=RULE)
+    none = words.with_beats(library, text, char_s, "en", shown=np.array([True, False]), stress=RULE)
     assert none.gesture.tolist() == [0, 1]
     assert cues.later(2.0).time_s.tolist() == (cues.time_s + 2.0).tolist()
 
