@@ -155,7 +155,7 @@ class _Bodies:
 
     def _decide(self, rows: Ints) -> None:
         """Each of the rows goes on to the next tick ahead in which its planner may decide anew, and decides."""
-        rows, at = self.ahead.next_due(rows, self.state)
+        at = self.ahead.go_on(rows, self.state)
         early = self.fresh[rows] & (at != 0)
         for row in rows[early].tolist():
             self._note_standing(row)
@@ -170,7 +170,7 @@ class _Bodies:
 
     def _look_after(self, rows: Ints) -> None:
         """Lines and beats of the rows whose ticks ahead are through, then the next ticks ahead."""
-        self.tick[rows] += self.ahead.pass_on(rows)
+        self.tick[rows] += self.ahead.length[rows]
         for row in rows[self.over_tick[rows] <= self.tick[rows]].tolist():
             self._next_beat(row)
         self._speak(rows[(self.speaks[rows] <= self.tick[rows]) & ~self.over[rows]])

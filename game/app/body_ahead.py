@@ -167,8 +167,11 @@ class Ahead:
         some = known.any(axis=1)
         return np.where(some, least, 0.0) - _ROUNDING_S, np.where(some, most, 0.0) + _ROUNDING_S
 
-    def next_due(self, rows: Ints, state: PlannerState) -> tuple[Ints, Ints]:
-        """The rows, and the place of the next tick ahead in which each one's decision may change; −1: in none."""
+    def go_on(self, rows: Ints, state: PlannerState) -> Ints:
+        """The rows (R,) go on to the next tick ahead in which their decision may change.
+
+        -> (R,) its place, −1 where there is none and they have gone through all.
+        """
         config, planner = self.planner.config, self.planner
         far = np.abs(self.emotion[rows] - state.emotion[rows, None]) > config.tolerance
         due = far.any(axis=2)
@@ -179,13 +182,9 @@ class Ahead:
         found = due.any(axis=1)
         at = np.where(found, due.argmax(axis=1), -1)
         self.at[rows] = np.where(found, at + 1, self.length[rows])
-        return rows, at
+        return at
 
     def signal(self, rows: Ints, at: Ints, habit: Habit | None) -> PlannerSignal:
         """What the ticks at places (R,) ahead bring, to each at its own time."""
         words = self.words[rows, at].astype(np.float64)
         return PlannerSignal(self.emotion[rows, at], words, self.time_s[rows, at], habit)
-
-    def pass_on(self, rows: Ints) -> Ints:
-        """(R,) how many ticks those rows have gone through."""
-        return self.length[rows]
