@@ -24,7 +24,7 @@ from game.render import Device, FontSet, FrameView, Hud, Level
 from game.tools.crawl.hands import Hands, on_picture
 from game.tools.crawl.moments import Moment, moments_of
 from game.tools.crawl.paper import Box, Fault
-from game.tools.crawl.pixels import Photographs, Seen, judge
+from game.tools.crawl.pixels import Photographs, Seen, judge, whole_box
 from game.tools.crawl.probe import ProbeHud
 from game.tools.crawl.visit import Look, session_of
 
@@ -149,7 +149,10 @@ class Darkroom:
         empty = self._draw(replace(view, hud=None, skin_matrices=gone))
         photographs = Photographs(with_letters, letterless, scene, empty)
         seen = None if moment is None else self._seen(view)
-        faults = [*self._broken(view), *judge(photographs, probe.written, seen, self.fonts, scale)]
+        faults = [
+            *self._broken(view, whole_box(with_letters, scale)),
+            *judge(photographs, probe.written, seen, self.fonts, scale),
+        ]
         if moment is None:
             return Print(node, kind, self.look, with_letters, tuple(faults), scale, shot=window.direction.shot)
         world = self.session.world
@@ -166,9 +169,9 @@ class Darkroom:
         self.window.renderer.draw(view)
         return self.window.renderer.read_pixels()
 
-    def _broken(self, view: FrameView) -> Iterator[Fault]:
+    def _broken(self, view: FrameView, whole: Box) -> Iterator[Fault]:
         """What GL complains of, and bodies that are nowhere."""
-        error, whole = self.device.context.error, Box(0.0, 0.0, 1280.0, 720.0)
+        error = self.device.context.error
         if error != "GL_NO_ERROR":
             yield Fault("gl", error, "the graphics driver refused something", whole)
         if not np.isfinite(view.skin_matrices).all():

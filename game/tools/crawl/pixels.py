@@ -15,7 +15,7 @@ from game.render import FontSet
 from game.tools.crawl.paper import Box, Fault
 from game.tools.crawl.probe import Letters
 
-__all__ = ["Photographs", "Seen", "contrast_of", "judge"]
+__all__ = ["Photographs", "Seen", "contrast_of", "judge", "whole_box"]
 
 Picture = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -89,7 +89,8 @@ def judge(
     return found
 
 
-def _whole_box(picture: Picture, scale: float) -> Box:
+def whole_box(picture: Picture, scale: float) -> Box:
+    """All of a picture, in design pixels."""
     return Box(0.0, 0.0, picture.shape[1] / scale, picture.shape[0] / scale)
 
 
@@ -97,7 +98,7 @@ def _blank(photographs: Photographs, scale: float) -> Iterator[Fault]:
     for name, picture in (("the picture", photographs.whole), ("the scene", photographs.scene)):
         spread = float(picture.astype(np.float64).mean(axis=2).std())
         if spread < BLANK:
-            yield Fault("blank", name, f"one colour all over (deviation {spread:.1f})", _whole_box(picture, scale))
+            yield Fault("blank", name, f"one colour all over (deviation {spread:.1f})", whole_box(picture, scale))
             return
 
 
@@ -167,7 +168,7 @@ def _at_the_edge(photographs: Photographs, scale: float) -> Iterator[Fault]:
 
 def _cut_or_covered(photographs: Photographs, seen: Seen, scale: float) -> Iterator[Fault]:
     person = _differ(photographs.scene, photographs.empty)
-    whole = _whole_box(photographs.whole, scale)
+    whole = whole_box(photographs.whole, scale)
     if person.mean() < PERSON_SHARE:
         yield Fault("person", "nobody", f"{person.mean():.1%} of the picture is the person", whole)
         return
