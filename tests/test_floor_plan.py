@@ -30,7 +30,10 @@ PLAN: dict[str, set[str]] = {
 # Only these touch the window and the GPU (offline tools draw through game.render).
 MAY_DRAW = {"app", "render"}
 # What the runtime may import besides the standard library and this project.
-RUNTIME = {"numpy", "scipy", "yaml", "pygame", "moderngl", "platformdirs", "font_source_sans_pro", "font_fredoka_one"}
+RUNTIME = {
+    "numpy", "scipy", "yaml", "pygame", "moderngl", "wasmtime", "platformdirs", "font_source_sans_pro",
+    "font_fredoka_one",
+}  # fmt: skip
 
 MODULES = sorted(path for path in GAME.rglob("*.py") if path.parent != GAME)
 

@@ -3,6 +3,7 @@
 examples:
   run_game.py build                  remake everything
   run_game.py build takes units      only the performed takes and the motion units
+  run_game.py build compiled         only the loops written in C
   run_game.py build --check          build beside, compare, write nothing; exit 1 where something differs
 
 On one machine the same code makes the same bytes. Other CPUs differ in the last bits of a float; --check therefore
@@ -26,7 +27,7 @@ import numpy as np
 
 from game.app.gltf_check import validate
 from game.core.errors import BadInput, MissingPart
-from game.core.paths import ASSETS
+from game.core.paths import ASSETS, ROOT
 from game.formats import read_gltf
 
 __all__ = ["STEPS", "add_arguments", "check_models", "differences", "run"]
@@ -51,6 +52,12 @@ def _stalls(out: Path) -> list[Path]:
     return [p for source in sorted((ASSETS / "stalls").glob("*.yaml")) for p in build_stall(source, out)]
 
 
+def _compiled(out: Path) -> list[Path]:
+    from game.tools.compiling import build_compiled
+
+    return build_compiled(out)
+
+
 def _takes(out: Path) -> list[Path]:
     from game.tools.perform import build_takes
 
@@ -67,12 +74,16 @@ def _units(out: Path) -> list[Path]:
 
 
 STEPS: dict[str, tuple[Path, Callable[[Path], list[Path]]]] = {
+    "compiled": (ROOT, _compiled),
     "takes": (ASSETS / "motion" / "takes", _takes),
     "units": (ASSETS / "motion", _units),
     "characters": (ASSETS / "characters", _characters),
     "stalls": (ASSETS / "stalls", _stalls),
 }
 """Name -> where the files live, and what makes them; in the order in which one builds on the other."""
+
+_COMPILERS = ("ziglang",)
+_MODELLERS = ("skimage", "fast_simplification")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -159,18 +170,20 @@ def run(args: argparse.Namespace) -> int:
     unknown = [name for name in args.what if name not in STEPS]
     if unknown:
         raise BadInput("build", expected=" | ".join(STEPS), seen=unknown[0])
-    for module in ("skimage", "fast_simplification"):
+    wanted = args.what or list(STEPS)
+    needed = (*_COMPILERS * ("compiled" in wanted), *_MODELLERS * (wanted != ["compiled"]))
+    for module in needed:
         if importlib.util.find_spec(module) is None:
             raise MissingPart(f"the module {module} is missing; install the builders: pip install -e '.[build]'")
     different = 0
     for name, (folder, make) in STEPS.items():
-        if args.what and name not in args.what:
+        if name not in wanted:
             continue
         start = time.perf_counter()
         with tempfile.TemporaryDirectory(prefix="build-") as scratch:
             made = make(Path(scratch))
             for path in made:
-                kept = folder / path.name
+                kept = folder / path.relative_to(scratch)
                 found = differences(path, kept)
                 if found is not None:
                     different += 1

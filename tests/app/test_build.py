@@ -72,4 +72,4 @@ def test_every_generated_file_has_a_step_that_makes_it() -> None:
 
 def test_an_unknown_step_is_refused(capsys) -> None:
     assert main(["build", "castle"]) == 2
-    assert "takes | units | characters | stalls" in capsys.readouterr().err
+    assert "compiled | takes | units | characters | stalls" in capsys.readouterr().err
