@@ -68,3 +68,12 @@ static inline Vec3 transform(const Mat4 *a, Vec3 v) {
         a->m[1][0] * v.x + a->m[1][1] * v.y + a->m[1][2] * v.z + a->m[1][3],
         a->m[2][0] * v.x + a->m[2][1] * v.y + a->m[2][2] * v.z + a->m[2][3]);
 }
+
+// A turn and a place: where a joint is, seen from the space that it leads to.
+typedef struct { Quat turn; Vec3 place; } Rigid;
+// A point of the joint's frame in that space.
+static inline Vec3 point_from(const Rigid *a, Vec3 v) { return add(a->place, rotate(a->turn, v)); }
+// What lies at an offset in a's frame and is turned there.
+static inline Rigid carried(const Rigid *a, Quat turn, Vec3 offset) {
+    return (Rigid){multiply(a->turn, turn), point_from(a, offset)};
+}
