@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
+
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,7 @@ from game.render.device import PREMULTIPLIED, Device, Owner, layout, set_uniform
 from game.render.face_planes import face_planes
 from game.render.levels import Level
 from game.render.model import MAX_JOINTS, CharacterMesh, CharacterModel, Run, ShadowMesh
-from game.render.silhouette import Edges, SilhouetteFinder
+from game.render.silhouette import SightFinder
 from game.render.weave import weave_tiles
 
 __all__ = ["CharacterDrawing"]
@@ -19,6 +21,7 @@ __all__ = ["CharacterDrawing"]
 _Draw = tuple[moderngl.VertexArray, int, int]  # what to draw with: first corner, number of corners
 
 _CLASSES = {"hair": "HAIR", "face": "FACE", "skin": "SKIN", "gloss": "GLOSS", "woven": "WOVEN", "cloth": "", "flat": ""}
+_LINE_REACH = 1.4  # outlines are so many times wider where they are widest, with their feather
 _MARGIN_PX = 6  # outline, feather and rounding outside the mesh's own box
 
 
@@ -36,18 +39,13 @@ class CharacterDrawing(Owner):
         self._context, self._nowhere = device.context, device.nowhere
         self._mesh = mesh = model.mesh(level.triangles)
         self._joints = self.own(device.context.buffer(reserve=MAX_JOINTS * 48, dynamic=True))
-        above = mesh.above
-        self._finders = (
-            {
-                True: SilhouetteFinder(mesh.edges, mesh.triangle),
-                False: SilhouetteFinder(
-                    Edges(mesh.edges.adjacency[: above.edges], mesh.edges.face[: above.edges]),
-                    mesh.triangle[: above.triangles],
-                ),
-            }
+        self._sight = (
+            SightFinder(len(mesh.position), mesh.triangle, [run.first // 3 for run in mesh.runs], mesh.edges)
             if device.software
             else None
         )
+        # What moves beside the person is too small to hide anything of itself.
+        self._hides, self._line_px, self._size = not lamps, level.line_px, device.size
         self._whole = True
         self._make_skinning(device, mesh, level if model.shadow is not None else None)
         self._make_drawing(device, mesh, level, lamps)
@@ -211,7 +209,7 @@ class CharacterDrawing(Owner):
 
         Returns the picture box (x, y, width, height) that encloses the mesh.
         """
-        self._whole = whole
+        self._whole, self._size = whole, size
         rows = np.ascontiguousarray(skin_matrices[:, :3, :], dtype=np.float32)
         self._joints.write(rows)
         self._joints.bind_to_uniform_block(1)
@@ -264,8 +262,8 @@ class CharacterDrawing(Owner):
             self._weaves.use(7)
         runs = [(array, run.first, run.count) for array, run in self._draws if self._whole or run.group == "above"]
         corners = 4 * (len(self._mesh.edges.adjacency) if self._whole else self._mesh.above.edges)
-        if self._finders is not None:
-            runs, corners = self._select(runs, self._finders[self._whole])
+        if self._sight is not None:
+            runs, corners = self._select(runs, self._sight)
         for array, first, count in runs:
             if count:
                 array.render(vertices=count, first=first)
@@ -276,21 +274,24 @@ class CharacterDrawing(Owner):
             self._outline.render(moderngl.LINES_ADJACENCY, vertices=corners)
             context.fbo.depth_mask = True
 
-    def _select(self, runs: list[_Draw], finder: SilhouetteFinder) -> tuple[list[_Draw], int]:
-        """Write the front faces and the silhouette of this pose to the index buffers; returns what to draw of them."""
-        mesh = self._mesh
-        vertices, triangles = (
-            (len(mesh.position), len(mesh.triangle)) if self._whole else (mesh.above.vertices, mesh.above.triangles)
+    def _select(self, runs: list[_Draw], finder: SightFinder) -> tuple[list[_Draw], int]:
+        """Write what is seen of this pose to the index buffers; returns what to draw of them."""
+        mesh, above = self._mesh, self._mesh.above
+        vertices, triangles, edges = (
+            (len(mesh.position), len(mesh.triangle), len(mesh.edges.adjacency))
+            if self._whole
+            else (above.vertices, above.triangles, above.edges)
         )
-        clip = np.frombuffer(self._captured[0].read(vertices * 16), dtype=np.float32).reshape(-1, 4)
-        front, rows = finder.find(clip)
-        self._index.write(mesh.triangle[:triangles].compress(front, axis=0))
-        if len(rows):
-            self._edges.write(rows)
-        counts = np.add.reduceat(front, [first // 3 for _, first, _ in runs], dtype=np.intp) * 3
-        firsts = np.cumsum(counts) - counts
-        arrays = (array for array, _, _ in runs)
-        return list(zip(arrays, firsts.tolist(), counts.tolist(), strict=True)), rows.size
+        self._captured[0].read_into(finder.clip, vertices * 16)
+        line_px = _LINE_REACH * self._line_px * self._size[1] / 720.0 + 1.0
+        sight = finder.look(vertices, triangles, edges, len(runs), self._size if self._hides else None, line_px)
+        self._index.write(sight.triangle)
+        if len(sight.line):
+            self._edges.write(sight.line)
+        counts = [3 * count for count in sight.counts]
+        firsts = accumulate(counts[:-1], initial=0)
+        shown = zip(runs, firsts, counts, strict=True)
+        return [(array, first, count) for (array, _, _), first, count in shown], sight.line.size
 
     def draw_over(self, face_over: moderngl.Texture) -> None:
         """Draw the second face layer over the hair."""

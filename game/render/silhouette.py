@@ -1,13 +1,20 @@
-"""Edges of a mesh with the corners across them, and which of them lie on the silhouette of a picture."""
+"""Edges of a mesh with the corners across them, and what of a mesh is seen in a picture."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Edges", "SilhouetteFinder", "find_edges"]
+from game.core.compiled import Machine
+
+__all__ = ["Edges", "Sight", "SightFinder", "find_edges"]
+
+_MODULE = Path(__file__).with_name("sight.wasm")
+_CELL_PX = 2  # side of a cell of the grid in which hidden faces are found
 
 
 @dataclass(frozen=True)
@@ -55,29 +62,52 @@ def find_edges(
     return Edges(adjacency, faces)
 
 
-class SilhouetteFinder:
-    """Picks front faces and silhouette edges on the CPU: for a software rasteriser a tenth of the work of testing all
-    edges itself, and three quarters of that of turning back faces away."""
+@dataclass(frozen=True)
+class Sight:
+    """What is to be drawn of a pose: views that the next look overwrites.
 
-    def __init__(self, edges: Edges, triangle: NDArray[np.int32]) -> None:
-        """All of triangle (t, 3) may be used by the edges; a border edge is in front where its only face is."""
-        self._adjacency = edges.adjacency
-        self._corners = tuple(np.ascontiguousarray(triangle[:, i]) for i in range(3))
-        self._one = np.ascontiguousarray(edges.face[:, 0])
-        # The face beyond a border never is in front: a place of its own at the end of the list.
-        self._other = np.where(edges.face[:, 1] < 0, len(triangle), edges.face[:, 1])
+    triangle (n, 3) int32, run by run; counts: triangles of each run; line (m, 4) int32: adjacency of outlines.
+    """
 
-    def find(self, clip: NDArray[np.float32]) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
-        """clip (v, 4) clip-space positions -> front faces (t,), adjacency rows (n, 4) of the silhouette."""
-        w = 1.0 / clip[:, 3]
-        x, y = clip[:, 0] * w, clip[:, 1] * w
-        a, b, c = self._corners
-        # mode="clip" spares NumPy a copy of the numbers, all of which are in range.
-        xa, ya = x.take(a, mode="clip"), y.take(a, mode="clip")
-        area = (x.take(b, mode="clip") - xa) * (y.take(c, mode="clip") - ya)
-        area -= (y.take(b, mode="clip") - ya) * (x.take(c, mode="clip") - xa)
-        front = np.zeros(len(a) + 1, bool)
-        np.greater(area, 0.0, out=front[:-1])
-        silhouette = front.take(self._one, mode="clip") != front.take(self._other, mode="clip")
-        rows: NDArray[np.int32] = self._adjacency.compress(silhouette, axis=0)
-        return front[:-1], rows
+    triangle: NDArray[np.int32]
+    counts: tuple[int, ...]
+    line: NDArray[np.int32]
+
+
+class SightFinder:
+    """Picks the faces and outlines that are seen, on the CPU (sight/sight.c): for a software rasteriser, which shades
+    hidden faces like others, a third of the work of drawing them."""
+
+    def __init__(self, vertices: int, triangle: NDArray[np.int32], first: Sequence[int], edges: Edges) -> None:
+        """triangle (t, 3); first: the first triangle of each run."""
+        machine = Machine(_MODULE)
+        self._machine, self._find = machine, machine.function("find", "11I6If")
+        kept = (triangle, edges.adjacency, edges.face, np.array(first, dtype=np.int32))
+        self._given = [machine.kept(array, np.int32) for array in kept]
+        self._clip = machine.block((vertices, 4), np.float32)
+        self._places = [machine.block((vertices, 3), np.float32), machine.block(len(triangle), np.uint8)]
+        self._grid = machine.block((0, 0), np.float32)
+        self._triangle = machine.block(triangle.shape, np.int32)
+        self._line = machine.block(edges.adjacency.shape, np.int32)
+        self._count = machine.block(len(first) + 1, np.int32)
+
+    @property
+    def clip(self) -> NDArray[np.float32]:
+        """(v, 4): where the vertices are, in clip coordinates; to be written before looking."""
+        return self._clip.data
+
+    def look(
+        self, vertices: int, triangles: int, edges: int, runs: int, size: tuple[int, int] | None, line_px: float = 0.0
+    ) -> Sight:
+        """Look at the first so many of each. ``size``: of the picture, whose hidden faces are left out, or None:
+        they stay. ``line_px``: how far an outline reaches from its edge."""
+        rows, columns = 0, 0
+        if size is not None:
+            columns, rows = -(-size[0] // (4 * _CELL_PX)) * 4, -(-size[1] // _CELL_PX)
+        if self._grid.data.shape != (rows, columns):
+            self._grid = self._machine.block((rows, columns), np.float32)
+        blocks = [self._clip, *self._given, *self._places, self._grid, self._triangle, self._line, self._count]
+        addresses = [block.address for block in blocks]
+        self._find(*addresses, vertices, triangles, edges, runs, columns, rows, line_px / _CELL_PX)
+        *counts, lines = self._count.data[: runs + 1].tolist()
+        return Sight(self._triangle.data[: sum(counts)], tuple(counts), self._line.data[:lines])

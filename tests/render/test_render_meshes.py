@@ -2,6 +2,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -21,7 +22,7 @@ from game.render.model import (
     merge_character,
     merge_static,
 )
-from game.render.silhouette import SilhouetteFinder, find_edges
+from game.render.silhouette import Sight, SightFinder, find_edges
 
 CLOTH = Material("coat", "cloth", (0.2, 0.4, 0.5), (0.1, 0.2, 0.4), (0.1, 0.1, 0.3))
 
@@ -50,13 +51,80 @@ def clip_of(mesh, eye=(0.0, 0.0, 6.0)):
     return (points @ camera.view_projection(16 / 9).T).astype(np.float32)
 
 
+def look(position, triangle, clip, size=None) -> Sight:
+    """What is seen of a mesh in a picture of ``size``; None: what is in front."""
+    edges = find_edges(position, triangle, np.ones(len(position), np.float32))
+    finder = SightFinder(len(position), triangle, [0], edges)
+    finder.clip[:] = clip
+    return finder.look(len(position), len(triangle), len(edges.adjacency), 1, size, 2.0)
+
+
+def squares(*places: tuple[float, float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Squares that look along z: centre, depth and half side of each -> position, triangle."""
+    corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    position = [[x + h * i, y + h * j, z] for x, y, z, h in places for i, j in corner]
+    triangle = [[4 * k + i for i in face] for k in range(len(places)) for face in ((0, 1, 2), (0, 2, 3))]
+    return np.array(position, np.float32), np.array(triangle, np.int32)
+
+
+def seen(*places: tuple[float, float, float, float], size=(640, 360)) -> set[int]:
+    """Which of the squares are drawn."""
+    position, triangle = squares(*places)
+    clip = clip_of(cast(CharacterMesh, SimpleNamespace(position=position)))
+    return set((look(position, triangle, clip, size).triangle // 4).ravel().tolist())
+
+
 def test_the_silhouette_of_a_cube_seen_from_the_front_is_its_front_square() -> None:
     mesh = merge_character([cube()], 1)
-    front, rows = SilhouetteFinder(mesh.edges, mesh.triangle).find(clip_of(mesh))
-    assert (mesh.position[mesh.triangle[front]][:, :, 2] == 1).all()
-    edges = {frozenset(map(tuple, mesh.position[row[1:3]])) for row in rows}
-    assert len(edges) == 4
-    assert all(point[2] == 1 for edge in edges for point in edge)
+    for size in (None, (640, 360)):
+        sight = look(mesh.position, mesh.triangle, clip_of(mesh), size)
+        assert sight.counts == (2,)
+        assert (mesh.position[sight.triangle][:, :, 2] == 1).all()
+        edges = {frozenset(map(tuple, mesh.position[row[1:3]])) for row in sight.line}
+        assert len(edges) == 4
+        assert all(point[2] == 1 for edge in edges for point in edge)
+
+
+def test_a_face_behind_another_is_left_out_unless_something_of_it_looks_out() -> None:
+    front, behind = (0.0, 0.0, 1.0, 0.5), (0.0, 0.0, 0.0, 0.4)
+    assert seen(front, behind) == {0}
+    assert seen(behind, front) == {1}, "whatever the order"
+    assert seen(front, (0.3, 0.0, 0.0, 0.4)) == {0, 1}, "it looks out at the right"
+    assert seen(front, (0.0, 0.0, 0.0, 0.7)) == {0, 1}, "it looks out all around"
+    assert seen(front, (0.0, 0.0, 0.9999, 0.4)) == {0, 1}, "what is as near as that may shimmer through"
+    assert seen(front, behind, size=None) == {0, 1}, "hidden faces were not to be looked for"
+
+
+def test_a_slit_of_two_pixels_shows_what_is_behind() -> None:
+    """A pixel here is 1.2 cm."""
+    left, right = (-0.515, 0.0, 1.0, 0.5), (0.515, 0.0, 1.0, 0.5)
+    assert seen(left, right, (0.0, 0.0, 0.9, 0.4)) == {0, 1, 2}
+    closed = (0.5, 0.0, 1.0, 0.5)
+    assert seen((-0.5, 0.0, 1.0, 0.5), closed, (0.0, 0.0, 0.9, 0.4)) == {0, 1}
+
+
+def test_outlines_of_hidden_faces_are_left_out() -> None:
+    position, triangle = squares((0.0, 0.0, 1.0, 0.5), (0.0, 0.0, 0.0, 0.3))
+    clip = clip_of(cast(CharacterMesh, SimpleNamespace(position=position)))
+    assert set((look(position, triangle, clip, (640, 360)).line // 4).ravel().tolist()) == {0}
+    assert len(look(position, triangle, clip).line) == 8
+
+
+def test_faces_that_reach_behind_the_eye_stay() -> None:
+    """The eye is at z = 6."""
+    position = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 7], [-1, -1, 2], [1, -1, 2], [0, 1, 2]], np.float32)
+    triangle = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
+    clip = clip_of(cast(CharacterMesh, SimpleNamespace(position=position)))
+    assert len(look(position, triangle, clip, (640, 360)).triangle) == 2
+
+
+def test_what_is_no_number_neither_traps_nor_reads_elsewhere() -> None:
+    position, triangle = squares((0.0, 0.0, 1.0, 0.5), (0.0, 0.0, 0.0, 0.3))
+    for odd in (np.nan, np.inf, -np.inf, 3e38, 1e-38):
+        look(position, triangle, np.full((8, 4), odd, np.float32), (640, 360))
+        clip = clip_of(cast(CharacterMesh, SimpleNamespace(position=position)))
+        clip[3] = (odd, -odd, 0.0, 1.0)
+        look(position, triangle, clip, (640, 360))
 
 
 def test_edges_are_shared_across_split_vertices() -> None:
@@ -71,10 +139,9 @@ def test_edges_are_shared_across_split_vertices() -> None:
 def test_a_border_edge_counts_where_its_face_is_in_front() -> None:
     position = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
     triangle = np.array([[0, 1, 2]], np.int32)
-    finder = SilhouetteFinder(find_edges(position, triangle, np.ones(3, np.float32)), triangle)
     clip = np.hstack([position, np.ones((3, 1))]).astype(np.float32)
-    assert len(finder.find(clip)[1]) == 3
-    assert len(finder.find(clip * np.array([-1, 1, 1, 1], np.float32))[1]) == 0
+    assert len(look(position, triangle, clip).line) == 3
+    assert len(look(position, triangle, clip * np.array([-1, 1, 1, 1], np.float32)).line) == 0
 
 
 def test_parts_without_outline_have_no_edges() -> None:
