@@ -9,7 +9,9 @@ missing bones) is the rig's (skinning.py).
 2. Each palm goes where its contact wants it: over the table in the world, near the own head, chest, belly or hips at
    the same place of *this* body's head, chest, belly or hips, in the open as seen from the shoulder at the length of
    this arm. All of them are weighed by how near they are, so nothing switches. Hands that are close together stay so.
-3. Arms and legs follow by the same inverse kinematics as everywhere (limbs.py).
+3. Arms and legs follow by the same inverse kinematics as everywhere (limbs.h).
+
+Here is what that needs to know of the two bodies; the fit itself is skin/fit.c.
 """
 
 from __future__ import annotations
@@ -21,12 +23,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from game.animation import bilinear as bl
-from game.animation import figure, limbs
 from game.animation.body_size import REGIONS, BodySize
 from game.animation.collision import BODY, TABLE_BACK_Z_M
-from game.animation.placing import place_limbs
-from game.animation.pose import Pose
+from game.animation.reach import LIMB, STRAIGHT, limb_table
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
 
@@ -65,8 +64,8 @@ _TOGETHER_M, _APART_M = 0.14, 0.34
 """Palms nearer than the first keep their distance, further apart than the second each goes its own way."""
 _REACH = (0.985, 0.999)
 """Shares of an arm's length between which a reach is clamped that only this body lacks."""
-_CLEAR = 1.35
-"""Radii of a body's part beyond which a palm is out of it."""
+_CLEAR, _MIDDLE = 1.35, 0.4
+"""Radii of a body's part beyond which a palm is out of it, and within which it may be anywhere."""
 _SAME_M = 1e-6
 
 
@@ -77,28 +76,53 @@ def _regions() -> tuple[Floats, Floats]:
 
 
 _CENTRES, _RADII = _regions()
-_PALM = np.array([[_PALM_M, 0.0, 0.0], [-_PALM_M, 0.0, 0.0]], dtype=np.float32)[..., None]
-_ARMS = tuple(figure.WHERE[f"{s}UpperArm"] for s in ("left", "right"))
-_AT = np.array([(figure.WHERE[r],) * 2 for r in REGIONS] + [_ARMS, _ARMS])
-_FLAT = np.eye(3, dtype=np.float32)
-_TABLE = np.array([0.0, TABLE_TOP_M, 0.0], dtype=np.float32)
-_SUM, _ONES = np.ones(3, dtype=np.float32), np.ones((6, 1), dtype=np.float32)
-# How a nearness becomes a weight: 0 at the first, 1 at the second.
-_LIMITS = np.array(
-    [(_FAR, _NEAR)] * 4
-    + [
-        (TABLE_BACK_Z_M + _LOW_BACK_M[0], TABLE_BACK_Z_M + _LOW_BACK_M[1]),
-        (TABLE_FRONT_Z_M + 2.0 * _BESIDE_TABLE_M, TABLE_FRONT_Z_M + _BESIDE_TABLE_M),
-        (TABLE_TOP_M + _ABOVE_TABLE_M, TABLE_TOP_M + _OVER_TABLE_M),
-        (_APART_M, _TOGETHER_M),
-        (TABLE_BACK_Z_M + _HIGH_BACK_M[0], TABLE_BACK_Z_M + _HIGH_BACK_M[1]),
-        (TABLE_TOP_M + _HIGH_M, TABLE_TOP_M + _LOW_M),
-    ]
+_SIDES = ("left", "right")
+_LIMBS = (
+    *((f"{s}Shoulder", f"{s}UpperArm", f"{s}LowerArm", f"{s}Hand") for s in _SIDES),
+    *(("hips", f"{s}UpperLeg", f"{s}LowerLeg", f"{s}Foot") for s in _SIDES),
 )
-_OUTSIDE = _LIMITS[:, :1].astype(np.float32)
-_STEEP = (1.0 / (_LIMITS[:, 1:] - _LIMITS[:, :1])).astype(np.float32)
-for _array in (_CENTRES, _RADII, _PALM, _AT, _FLAT, _TABLE, _SUM, _ONES, _LIMITS, _OUTSIDE, _STEEP):
+"""What the upper bone hangs on, upper bone, lower bone and end of both arms and both legs."""
+_PARTS = np.array([[REFERENCE.index[name] for name in limb] for limb in _LIMBS])
+_ENDS = [*_PARTS[:, 3].tolist(), REFERENCE.index["head"]]
+
+
+def _figure() -> NDArray[np.intp]:
+    """(19,) the joints of REFERENCE that lead to hands, feet and head, parents first."""
+    found = set()
+    for end in _ENDS:
+        while end >= 0:
+            found.add(end)
+            end = int(REFERENCE.parents[end])
+    return np.array(sorted(found))
+
+
+_FIGURE = _figure()
+for _array in (_CENTRES, _RADII, _PARTS, _FIGURE):
     _array.setflags(write=False)
+
+# As in skin/fit.h.
+_REGION = np.dtype([("centre", "<f4", 3), ("radius", "<f4", 3)])
+_PART = np.dtype([("joint", "<i4"), ("reference", _REGION), ("mine", _REGION)])
+_JOINT = np.dtype([("turn", "<i4"), ("parent", "<i4"), ("reference", "<f4", 3), ("mine", "<f4", 3)])
+_LIMB = np.dtype([("joints", "<i4", 4), ("bones", LIMB), ("foot_reference", "<f4", 3), ("foot", "<f4", 3)])
+_LIMITS = {
+    "beside_body": (_FAR, _NEAR),
+    "low_back": (TABLE_BACK_Z_M + _LOW_BACK_M[0], TABLE_BACK_Z_M + _LOW_BACK_M[1]),
+    "high_back": (TABLE_BACK_Z_M + _HIGH_BACK_M[0], TABLE_BACK_Z_M + _HIGH_BACK_M[1]),
+    "beside_table": (TABLE_FRONT_Z_M + 2.0 * _BESIDE_TABLE_M, TABLE_FRONT_Z_M + _BESIDE_TABLE_M),
+    "above_table": (TABLE_TOP_M + _ABOVE_TABLE_M, TABLE_TOP_M + _OVER_TABLE_M),
+    "low": (TABLE_TOP_M + _HIGH_M, TABLE_TOP_M + _LOW_M),
+    "together": (_APART_M, _TOGETHER_M),
+}
+"""Measures at which something counts not at all, and at which it counts fully."""
+_FIT = np.dtype(
+    [
+        ("joint", _JOINT, len(_FIGURE)), ("limb", _LIMB, len(_LIMBS)), ("part", _PART, len(REGIONS)),
+        ("hips_reference", "<f4", 3), ("hips", "<f4", 3), ("palm", "<f4", (2, 3)),
+        ("leg", "<f4"), ("hand", "<f4"), ("arm", "<f4", 2), ("table_m", "<f4"), ("clear", "<f4"), ("middle", "<f4"),
+        *((name, "<f4", 2) for name in _LIMITS),
+    ]
+)  # fmt: skip
 
 
 def reference_places() -> dict[str, Floats]:
@@ -110,94 +134,44 @@ def reference_places() -> dict[str, Floats]:
 class Fitting:
     """A body as the fit wants it. Make it with fit_to.
 
-    rest: (41, 3) local translations of the fitted figure; hips: (3,) where its hips rest; leg, hand: this body's length
-    over the reference's. The other arrays are constants of the two figures side by side.
+    rest: (41, 3) local translations of the fitted figure; hips: (3,) where its hips rest; leg, hand, arm (2,): this
+    body's length over the reference's. limbs: (4,) LIMB of arms and legs; feet: (2, 2, 3) ankles at rest, the
+    reference's and this body's; centre, radius: (2, 4, 3) of REGIONS in their joints' frames on both bodies.
     """
 
     rest: Floats
     hips: Floats
     leg: float
     hand: float
-    offset: Floats  # (2, 19, 3) of the reference and of this body
-    limbs: limbs.Limbs
-    feet: Floats  # (2, 2, 3) ankles at rest: the reference's, this body's
-    centre: Floats  # (2, 6, 2, 3) of the places a hand can be in, in their frames
-    radius: Floats  # (2, 6, 2, 3)
+    arm: Floats
+    limbs: NDArray[np.void]
+    feet: Floats
+    centre: Floats
+    radius: Floats
 
-    def fit(self, pose: Pose) -> Pose:
-        """n characters' poses on the reference -> on the fitted figure."""
-        n = len(pose)
-        rotation = pose.rotation.astype(np.float32)
-        root = pose.root.astype(np.float32)
-        shift = root - _REST["hips"].astype(np.float32)
-        roots = np.concatenate([root, self.hips + shift * np.float32(self.leg)])
-        offset = self.offset if n == 1 else np.repeat(self.offset, n, axis=0)
-        local = bl.affine(rotation.take(figure.FIGURE, axis=1))
-        joints = np.concatenate([local, local])
-        joints[:, :, :3, 3] = offset
-        joints[:, 0, :3, 3] = roots
-        figure.figure_matrices(joints)
-        self._place(rotation, joints[:n], joints[n:])
-        return Pose(rotation, roots[n:], pose.gaze, pose.blink, pose.breath)
-
-    def _place(self, rotation: Floats, reference: Floats, mine: Floats) -> None:
-        """Arms and legs of this body to where they belong: rewrites the twelve joints of the limbs in rotation."""
-        goal = reference.take(figure.BONES[12:], axis=1)
-        place = goal[..., :3, 3]
-        reach = (goal[:, :2, :3, :3] @ _PALM)[..., 0]
-        palm = place[:, :2] + reach
-        place[:, :2] = self._palms(reference, mine, palm) - np.float32(self.hand) * reach
-        place[:, 2:] = self.feet[1] + np.float32(self.leg) * (place[:, 2:] - self.feet[0])
-        place_limbs(self.limbs, rotation, np.concatenate([mine.take(figure.BONES, axis=1), goal], axis=1))
-
-    def _palms(self, reference: Floats, mine: Floats, palm: Floats) -> Floats:
-        """Where the palms (n, 2, 3) of the reference are on this body.
-
-        Six places are asked at once, each a frame on both bodies: the regions, the shoulder (in the open) and the
-        table. The last two keep model space's axes.
-        """
-        n = len(palm)
-        turn = np.empty((n, 6, 3, 3), dtype=np.float32)
-        turn[:, :4] = reference.take(_AT[:4, 0], axis=1)[..., :3, :3]
-        turn[:, 4:] = _FLAT
-        here, there = reference[..., :3, 3].take(_AT, axis=1), mine[..., :3, 3].take(_AT, axis=1)
-        here[:, 5] = there[:, 5] = _TABLE
-        local = ((palm[:, None] - here) @ turn - self.centre[0]) / self.radius[0]
-        origin = there[:, :3].copy()
-        there += (local * self.radius[1] + self.centre[1]) @ turn.swapaxes(-1, -2)
-        way = palm[:, 1] - palm[:, 0]
-        nearness = np.empty((n, 10, 2), dtype=np.float32)
-        nearness[:, :4] = np.sqrt((local[:, :4] * local[:, :4]) @ _SUM)
-        nearness[:, 4] = nearness[:, 5] = nearness[:, 8] = palm[..., 2]
-        nearness[:, 6] = nearness[:, 9] = palm[..., 1]
-        nearness[:, 7] = np.sqrt((way * way) @ _SUM)[:, None]
-        # 0 far away, 1 near, smooth between.
-        nearness = np.minimum(np.maximum((nearness - _OUTSIDE) * _STEEP, np.float32(0.0)), np.float32(1.0))
-        nearness *= nearness * (np.float32(3.0) - np.float32(2.0) * nearness)
-        weight = np.zeros((n, 6, 2), dtype=np.float32)
-        high, low = nearness[:, 8], nearness[:, 9]
-        weight[:, 5] = (high + low * (nearness[:, 4] - high)) * nearness[:, 5] * nearness[:, 6]
-        # The table does not give way, so it comes before the body behind it.
-        np.multiply(nearness[:, :4], np.float32(1.0) - weight[:, 5:], out=weight[:, :4])
-        # What no contact claims is in the open.
-        away = np.float32(1.0) - weight
-        weight[:, 4] = away[:, 0] * away[:, 1] * away[:, 2] * away[:, 3] * away[:, 5]
-        share = weight.swapaxes(1, 2)[:, :, None]
-        found = np.asarray((share @ there.swapaxes(1, 2))[:, :, 0] / (share @ _ONES)[:, :, 0])
-        # Between two places, and on the way to one, a palm is no deeper in this body than in the reference's.
-        inside = ((found[:, None] - origin) @ turn[:, :3] - self.centre[1, :3]) / self.radius[1, :3]
-        deep = np.sqrt((inside * inside) @ _SUM)
-        wanted = np.minimum(np.sqrt((local[:, :3] * local[:, :3]) @ _SUM), np.float32(_CLEAR))
-        lack = np.maximum(wanted / np.maximum(deep, np.float32(1e-3)) - np.float32(1.0), np.float32(0.0))
-        lack *= wanted > np.float32(0.4)
-        most = lack.argmax(axis=1)[:, None]
-        out = (inside * lack[..., None] * self.radius[1, :3]) @ turn[:, :3].swapaxes(-1, -2)
-        found += np.take_along_axis(out, most[..., None], axis=1)[:, 0]
-        # Hands that hold each other.
-        fix = np.float32(0.5) * nearness[:, 7, :1] * (np.float32(self.hand) * way - (found[:, 1] - found[:, 0]))
-        found[:, 0] -= fix
-        found[:, 1] += fix
-        return found
+    def table(self) -> NDArray[np.void]:
+        """(1,) Fit of skin/fit.h."""
+        fit = np.zeros(1, dtype=_FIT)
+        place = {int(joint): i for i, joint in enumerate(_FIGURE)}
+        joint = fit[0]["joint"]
+        joint["turn"] = _FIGURE
+        joint["parent"] = [place.get(int(parent), -1) for parent in REFERENCE.parents[_FIGURE]]
+        joint["reference"], joint["mine"] = REFERENCE.rest_translation[_FIGURE], self.rest[_FIGURE]
+        limb = fit[0]["limb"]
+        limb["joints"] = np.vectorize(place.__getitem__)(_PARTS)
+        limb["bones"] = self.limbs
+        limb["foot_reference"][2:], limb["foot"][2:] = self.feet
+        part = fit[0]["part"]
+        part["joint"] = [place[REFERENCE.index[region]] for region in REGIONS]
+        for body, name in enumerate(("reference", "mine")):
+            part[name]["centre"], part[name]["radius"] = self.centre[body], self.radius[body]
+        fit["hips_reference"], fit["hips"] = _REST["hips"], self.hips
+        fit["palm"] = [(_PALM_M, 0.0, 0.0), (-_PALM_M, 0.0, 0.0)]
+        fit["leg"], fit["hand"], fit["arm"] = self.leg, self.hand, self.arm
+        fit["table_m"], fit["clear"], fit["middle"] = TABLE_TOP_M, _CLEAR, _MIDDLE
+        for name, limit in _LIMITS.items():
+            fit[name] = limit
+        return fit
 
 
 def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fitting | None:
@@ -220,35 +194,24 @@ def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fittin
             for n, p in zip(REFERENCE.names, parents, strict=True)
         ]
     )
-    ends, both = figure.ENDS, np.stack([REFERENCE.rest_translation, rest])
-    lengths = np.maximum(np.linalg.norm(both[:, ends[1:]], axis=-1), 1e-4)  # (2, 2, 4)
+    both = np.stack([REFERENCE.rest_translation, rest])
+    # Bodies side by side, upper and lower bones, arms and legs: (2, 2, 4).
+    lengths = np.maximum(np.linalg.norm(both[:, _PARTS[:, 2:].T], axis=-1), 1e-4)
     arm, leg = lengths[1].sum(0)[:2] / lengths[0].sum(0)[:2], lengths[1].sum(0)[2:] / lengths[0].sum(0)[2:]
-    offset = both[:, figure.FIGURE]
-    offset[:, 0] = 0.0
     hand = _hand_share(places, float(arm.mean()))
-    centre, radius = _places(where, size, arm, hand)
-    arrays = (
-        rest,
-        where["hips"],
-        offset,
-        np.array([[w[f"{s}Foot"] for s in ("left", "right")] for w in (_REST, where)]),
-        centre,
-        radius,
-    )
-    ready = [np.ascontiguousarray(a, dtype=np.float32) for a in arrays]
-    for array in ready:
-        array.setflags(write=False)
-    rest_, hips, offset_, feet, centre_, radius_ = ready
+    centre, radius = _places(where, size)
+    reach = np.array([_REACH, _REACH, STRAIGHT, STRAIGHT])
     return Fitting(
-        rest=rest_,
-        hips=hips,
+        rest=rest,
+        hips=where["hips"],
         leg=float(leg.mean()),
         hand=hand,
-        offset=offset_,
-        limbs=_limbs(lengths[1]),
-        feet=feet,
-        centre=centre_,
-        radius=radius_,
+        arm=arm,
+        # A pose's reach was clamped when it was made; it is not once more.
+        limbs=limb_table(lengths[1, 0], lengths[1, 1], reach),
+        feet=np.array([[w[f"{side}Foot"] for side in _SIDES] for w in (_REST, where)]),
+        centre=centre,
+        radius=radius,
     )
 
 
@@ -279,13 +242,8 @@ def _hand_share(places: Mapping[str, Floats], arm: float) -> float:
     return float(np.clip(np.median(shares) if shares else arm, 0.3, 3.0))
 
 
-def _limbs(lengths: Floats) -> limbs.Limbs:
-    """lengths: (2, 4) of upper and lower bones. A pose's reach was clamped when it was made; it is not once more."""
-    return limbs.limbs_of(lengths[0], lengths[1], np.array([_REACH, _REACH, limbs.STRAIGHT, limbs.STRAIGHT]))
-
-
-def _places(where: Mapping[str, Floats], size: BodySize | None, arm: Floats, hand: float) -> tuple[Floats, Floats]:
-    """(2, 6, 2, 3) centres in their frames and sizes of the places a hand can be in: the reference's, this body's."""
+def _places(where: Mapping[str, Floats], size: BodySize | None) -> tuple[Floats, Floats]:
+    """(2, 4, 3) centres in their joints' frames and radii of REGIONS: the reference's, this body's."""
     trunk = (where["head"] - where["hips"])[1] / (_REST["head"] - _REST["hips"])[1]
     wide = float(np.clip(_shoulders(where) / _shoulders(_REST), 0.5, 2.0))
     centres, radii = [], []
@@ -303,13 +261,8 @@ def _places(where: Mapping[str, Floats], size: BodySize | None, arm: Floats, han
                 place = place + (0.0, 0.0, size.ahead.get(region, 0.0))
             centres.append(place - where[region])
         radii.append(radius * share)
-    centre, radius = np.zeros((2, 6, 2, 3)), np.ones((2, 6, 2, 3))
-    own = np.array([c - _REST[r] for c, r in zip(_CENTRES, REGIONS, strict=True)])
-    centre[:, :4] = np.stack([own, np.array(centres)])[:, :, None]
-    radius[:, :4] = np.stack([_RADII, np.array(radii)])[:, :, None]
-    radius[1, 4] = arm[:, None]
-    radius[1, 5] = (1.0, hand, 1.0)
-    return centre, radius
+    own = [centre - _REST[region] for region, centre in zip(REGIONS, _CENTRES, strict=True)]
+    return np.array([own, centres]), np.array([_RADII, radii])
 
 
 def _shoulders(where: Mapping[str, Floats]) -> float:

@@ -1,8 +1,7 @@
 """Speed of the pose: for 1, 100 and 1000 characters, beside a NumPy floor for the same work.
 
-The floor is BENCH.md's: three samples, a masked blend of three layers, local to model space, skinning matrices of 60
-joints, in the fewest array calls found and the best layout: alone with matrices joint by joint, in a crowd with every
-matrix element as an array over the characters. It keeps no state, knows its frames and shares beforehand and mixes no
+The floor (bench_pose_floor.py) is BENCH.md's work: three samples, a masked blend of three layers, local to model space,
+skinning matrices of 60 joints. It keeps no state, knows its frames and shares beforehand and mixes no
 variants. "same work" is that part of ours on the shipped units (with up to seven variants mixed); "everything" adds
 transitions, contacts by IK, collisions, breath, gaze and blinking. Times are this thread's own: what others on the
 machine take does not count.
@@ -23,9 +22,8 @@ from game.animation import GAZE_CUSTOMER, Performer, PerformerState, PerformSign
 from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation.blending import compose
-from game.animation.chains import CROWD, to_model
-from game.animation.crowd import PIECE, crowd_matrices
 from game.animation.playback import advance_playback
+from game.app.bench_pose_floor import numpy_floor
 from game.app.bench_rows import Row, row
 from game.core.emotion_space import emotion_vector
 from game.core.humanoid import REFERENCE
@@ -51,13 +49,14 @@ def rows() -> list[Row]:
     performer = Performer(library)
     planner = Planner(library)
     plain, sprung = _rig(springs=False), _rig(springs=True)
+    clip = performer.bank.rows[2:402, ch.ROTATION].reshape(-1, ch.JOINTS, 4)
     table: list[Row] = []
     for n in _COUNTS:
         state, decisions, signal, pose = _stand(performer, planner, n)
         gate = performer.advance(state, decisions, signal, _TICK_S)[0].blend.source.gate
         floor, ours, everything = _alternate(
             [
-                _floor(performer, n),
+                numpy_floor(plain.skeleton, clip, n),
                 partial(_same_work, performer, plain, state, gate, signal),
                 partial(performer.advance, state, decisions, signal, _TICK_S),
             ],
@@ -149,32 +148,3 @@ def _rig(*, springs: bool) -> Rig:
         )
     assert len(names) == JOINTS
     return Rig.from_arrays(names, np.array(parents), np.array(rest), chains=chains if springs else ())
-
-
-def _floor(performer: Performer, n: int) -> Callable[[], object]:
-    """BENCH.md's work on this performer's rows."""
-    rng = np.random.default_rng(0)
-    rig = _rig(springs=False)
-    plan = rig.whole
-    joints = np.concatenate(rig.skeleton.levels) % ch.JOINTS
-    clip = performer.bank.rows[2:402, ch.ROTATION].reshape(-1, ch.JOINTS, 4)[:, joints].reshape(-1, 4 * JOINTS)
-    frame = rng.integers(0, 390, (n, 3, 1)) + np.arange(2)
-    part = rng.random((n, 3, 1)).astype(np.float32)
-    mix = np.stack([1.0 - part, part], axis=-1)
-    mask = np.repeat((rng.random((2, JOINTS)) < 0.4).astype(np.float32), 4, axis=1)
-    gate = np.stack([(1.0 - mask[0]) * (1.0 - mask[1]), mask[0] * (1.0 - mask[1]), mask[1]])
-    bind = np.linalg.inv(rig.skeleton.rest_model)[np.concatenate(rig.skeleton.levels)].astype(np.float32)
-    root = np.tile(plan.shift[plan.hips], (n, 1))
-
-    def blended(some: slice) -> Floats:
-        samples = (mix[some] @ clip.take(frame[some], axis=0))[:, :, 0]
-        return bl.normalize((samples * gate).sum(axis=1).reshape(-1, JOINTS, 4))
-
-    def alone() -> Floats:
-        local = bl.affine(blended(slice(None)))
-        local[:, :, :3, 3] = plan.shift
-        to_model(local, plan.chains)
-        return np.asarray(local @ bind)
-
-    pieces = [slice(i, min(i + PIECE, n)) for i in range(0, n, PIECE)]
-    return alone if n < CROWD else lambda: [crowd_matrices(plan, blended(p), root[p]) for p in pieces]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +66,7 @@ def load_cast(own: str, folder: Path = ASSETS / "characters", count: int = PEOPL
     files = [path for path in files if path.stem != own] or files
     for path in files:
         if path not in known:
-            known[path] = (load_crowd_mesh(path), _unsprung(load_rig(path)))
+            known[path] = (load_crowd_mesh(path), load_rig(path, springs=False))
     meshes, rigs = [known[path][0] for path in files], [known[path][1] for path in files]
     rng = np.random.default_rng(11)
     size, girth = 0.86 + 0.20 * rng.random(count), 0.84 + 0.26 * rng.random(count)
@@ -80,13 +80,6 @@ def load_cast(own: str, folder: Path = ASSETS / "characters", count: int = PEOPL
         girth=girth,
         tall_m=tall[which] * size,
     )
-
-
-def _unsprung(rig: Rig) -> Rig:
-    """At this distance nobody sees hair swing."""
-    from game.animation.springbones import build_springs
-
-    return replace(rig, springs=build_springs(rig.skeleton, (), ()))
 
 
 class Passersby:
@@ -165,7 +158,7 @@ class Passersby:
         world = np.stack([_world(*build) for build in builds])
         matrices: dict[int, NDArray[np.float32]] = {}
         for rig, rows in self._rows:
-            skin = rig.skin_matrices(rig.joint_matrices(_only(pose, rows)))
+            _, skin = rig.advance(rig.start(len(rows)), _only(pose, rows), TICK_S)
             matrices.update(zip(rows.tolist(), world[rows, None] @ skin, strict=True))
         return [matrices[who] for who in range(self._count)], np.array([(p.x, 0.0, p.z) for p in places])
 

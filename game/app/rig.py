@@ -17,12 +17,12 @@ from game.formats import SpringChain, Vrm, read_vrm, skeleton_of
 __all__ = ["load_rig", "rig_of"]
 
 
-def load_rig(path: Path) -> Rig:
-    """Read a VRM and make its rig. Raises BadInput where it has no skin to move."""
-    return rig_of(read_vrm(path))
+def load_rig(path: Path, *, springs: bool = True) -> Rig:
+    """Read a VRM and make its rig. springs: hair and cloth swing. Raises BadInput where it has no skin to move."""
+    return rig_of(read_vrm(path), springs=springs)
 
 
-def rig_of(vrm: Vrm) -> Rig:
+def rig_of(vrm: Vrm, *, springs: bool = True) -> Rig:
     """The rig of a VRM's first skin: humanoid bones, twist joints, spring chains with their colliders."""
     file = vrm.gltf
     if not file.skins:
@@ -42,8 +42,8 @@ def rig_of(vrm: Vrm) -> Rig:
         rest_rotation=found.skeleton.rest_rotation,
         skin_joint=found.skin_joints(file, 0),
         bones={name: found.joint[node] for name, node in vrm.bones.items()},
-        chains=[_chain(chain, found.joint) for chain in vrm.springs if len(chain.joints) > 1],
-        colliders=[RigCollider(found.joint[c.node], c.offset, c.radius_m, c.tail) for c in vrm.colliders],
+        chains=[_chain(chain, found.joint) for chain in vrm.springs if springs and len(chain.joints) > 1],
+        colliders=[RigCollider(found.joint[c.node], c.offset, c.radius_m, c.tail) for c in vrm.colliders if springs],
         size=size,
     )
 

@@ -5,8 +5,9 @@
 
 typedef struct { float x, y, z; } Vec3;
 typedef struct { float x, y, z, w; } Quat;
+typedef float Four __attribute__((vector_size(16)));
 // Row-major 4 x 4; the last row is 0 0 0 1.
-typedef struct { float m[4][4]; } Mat4;
+typedef union { float m[4][4]; Four row[4]; } Mat4;
 
 static inline Vec3 vec3(float x, float y, float z) { return (Vec3){x, y, z}; }
 static inline Vec3 add(Vec3 a, Vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
@@ -51,13 +52,9 @@ static inline Mat4 affine(Quat q, Vec3 place) {
 }
 static inline Mat4 after(const Mat4 *a, const Mat4 *b) {
     Mat4 c;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++)
-            c.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
-        c.m[i][3] += a->m[i][3];
-    }
-    c.m[3][0] = c.m[3][1] = c.m[3][2] = 0;
-    c.m[3][3] = 1;
+    for (int i = 0; i < 3; i++)
+        c.row[i] = a->m[i][0] * b->row[0] + a->m[i][1] * b->row[1] + a->m[i][2] * b->row[2] + a->m[i][3] * b->row[3];
+    c.row[3] = b->row[3];
     return c;
 }
 static inline Vec3 place_of(const Mat4 *a) { return vec3(a->m[0][3], a->m[1][3], a->m[2][3]); }

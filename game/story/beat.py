@@ -99,7 +99,8 @@ def timer_at(timer: TimerDef | None, choices: Sequence[Choice]) -> Timer | None:
     return Timer(timer.seconds, timer.default)
 
 
-class Beat(NamedTuple):
+@dataclass(frozen=True)
+class Beat:
     """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
 
     node: str

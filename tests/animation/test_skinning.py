@@ -7,12 +7,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from game.animation import Pose, Rig, SpringChain, SpringCollider
-from game.animation.springbones import advance_springs
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
 
 DT = 1.0 / 30.0
+BARE = np.tile(np.eye(4), (47, 1, 1))
 
 
 def pose_of(rotation: np.ndarray, root: np.ndarray | None = None) -> Pose:
@@ -45,7 +45,18 @@ def rig_arrays() -> tuple[list[str], list[int], list[np.ndarray]]:
     return names, parents, rest
 
 
-def make_rig(*, springs: bool = False, radius: float = 0.05, colliders: bool = True) -> Rig:
+def binds() -> np.ndarray:
+    """(J, 4, 4) inverse bind matrices of a mesh that was bound in whatever pose."""
+    rng = np.random.default_rng(4)
+    frames = [np.eye(4) for _ in rig_arrays()[0]]
+    for frame in frames:
+        frame[:3, :3], frame[:3, 3] = Rotation.random(random_state=rng).as_matrix(), rng.normal(size=3)
+    return np.linalg.inv(frames)
+
+
+def make_rig(
+    *, springs: bool = False, radius: float = 0.05, colliders: bool = True, bind: np.ndarray | None = None
+) -> Rig:
     names, parents, rest = rig_arrays()
     first = names.index("tail0")
     chain = SpringChain(
@@ -61,15 +72,6 @@ def make_rig(*, springs: bool = False, radius: float = 0.05, colliders: bool = T
         SpringCollider(names.index("neck"), (0.0, 0.0, -0.15), radius),
         SpringCollider(names.index("chest"), (-0.1, 0.1, -0.1), 0.06, (0.1, 0.1, -0.1)),
     )
-    rng = np.random.default_rng(4)
-    bind = np.linalg.inv(
-        np.array(
-            [
-                np.block([[Rotation.random(random_state=rng).as_matrix(), rng.normal(size=(3, 1))], [0, 0, 0, 1]])
-                for _ in names
-            ]
-        )
-    )
     return Rig.from_arrays(
         names,
         np.array(parents),
@@ -81,32 +83,44 @@ def make_rig(*, springs: bool = False, radius: float = 0.05, colliders: bool = T
 
 
 def test_skin_matrices_agree_with_plain_kinematics() -> None:
-    rig, pose = make_rig(), random_pose(5)
-    skin = rig.skin_matrices(rig.joint_matrices(pose))
+    rig, pose = make_rig(bind=binds()), random_pose(5)
+    _, skin = rig.advance(rig.start(5), pose, DT)
+    joints = rig.joint_matrices(pose)
     shift = np.tile(REFERENCE.rest_translation, (5, 1, 1))
     shift[:, 0] = pose.root
     position, rotation = REFERENCE.to_model(pose.rotation.astype(float), shift)
-    for joint in (0, 5, 20, 40):
+    for joint in range(len(REFERENCE)):
         model = np.tile(np.eye(4), (5, 1, 1))
         model[:, :3, :3] = quat.to_matrix(rotation[:, joint])
         model[:, :3, 3] = position[:, joint]
-        np.testing.assert_allclose(skin[:, joint], model @ rig.inverse_bind[joint], atol=1e-4)
+        np.testing.assert_allclose(joints[:, joint], model, atol=1e-5)
+        np.testing.assert_allclose(skin[:, joint], model @ binds()[joint], atol=1e-4)
+    # What hangs still on a joint goes with it.
+    tail = rig.skeleton.index["tail3"]
+    moved = joints[:, REFERENCE.index["head"]] @ np.array([0.0, 0.1 - 0.24, -0.2 - 0.03, 1.0])
+    np.testing.assert_allclose(joints[:, tail, :3, 3], moved[:, :3], atol=1e-5)
+    np.testing.assert_allclose(skin[:, tail], joints[:, tail] @ binds()[tail], atol=1e-4)
 
 
 def test_a_crowd_is_skinned_like_one() -> None:
-    rig, pose = make_rig(), random_pose(150)
-    _, skin = rig.advance(rig.start(150), pose, DT)
-    np.testing.assert_allclose(skin, rig.skin_matrices(rig.joint_matrices(pose)), atol=2e-5)
-    np.testing.assert_allclose(skin[:3], rig.advance(rig.start(3), random_pose(150), DT)[1][:3], atol=2e-5)
+    rig, pose = make_rig(springs=True, bind=binds()), random_pose(150)
+    state, skin = rig.advance(rig.start(150), pose, DT)
+    state, after = rig.advance(state, random_pose(150, seed=1), DT)
+    few = Pose(*(getattr(pose, f)[70:73] for f in ("rotation", "root", "gaze", "blink", "breath")))
+    then = random_pose(150, seed=1)
+    later = Pose(*(getattr(then, f)[70:73] for f in ("rotation", "root", "gaze", "blink", "breath")))
+    own, own_skin = rig.advance(rig.start(3), few, DT)
+    assert np.array_equal(own_skin, skin[70:73])
+    assert np.array_equal(rig.advance(own, later, DT)[1], after[70:73])
+    # A state is a value: what was begun from it can be begun again.
+    assert np.array_equal(rig.advance(own, later, DT)[1], after[70:73])
 
 
 def test_the_rest_pose_moves_nothing() -> None:
     names, parents, rest = rig_arrays()
     rig = Rig.from_arrays(names, np.array(parents), np.array(rest))
     still = pose_of(np.tile(quat.IDENTITY, (1, len(REFERENCE), 1)))
-    np.testing.assert_allclose(
-        rig.skin_matrices(rig.joint_matrices(still))[0], np.tile(np.eye(4), (47, 1, 1)), atol=1e-5
-    )
+    np.testing.assert_allclose(rig.advance(rig.start(1), still, DT)[1][0], np.tile(np.eye(4), (47, 1, 1)), atol=1e-5)
 
 
 @pytest.mark.parametrize("angle", [-2.2, -0.5, 0.0, 1.0, 2.4])
@@ -115,8 +129,9 @@ def test_the_forearm_takes_half_of_the_hands_twist(angle: float) -> None:
     q = np.tile(quat.IDENTITY, (1, len(REFERENCE), 1))
     bend = Rotation.from_euler("z", 0.5)
     q[0, REFERENCE.index["leftHand"]] = (bend * Rotation.from_euler("x", angle)).as_quat()
-    local = rig.local_rotations(pose_of(q))[0, rig.skeleton.index["leftForearmTwist"]]
-    np.testing.assert_allclose(Rotation.from_quat(local).as_rotvec(), [angle / 2, 0, 0], atol=1e-5)
+    model = rig.joint_matrices(pose_of(q))[0]
+    arm, twist = (model[rig.skeleton.index[f"left{name}"], :3, :3] for name in ("LowerArm", "ForearmTwist"))
+    np.testing.assert_allclose(Rotation.from_matrix(arm.T @ twist).as_rotvec(), [angle / 2, 0, 0], atol=1e-5)
 
 
 def test_a_turned_rest_pose_is_retargeted() -> None:
@@ -136,25 +151,23 @@ def test_a_turned_rest_pose_is_retargeted() -> None:
     assert model[0, 1, 3] == pytest.approx(0.8)
 
 
-def swing(
-    rig: Rig, seconds: float, dt: float = DT, n: int = 1, still_after: float = 0.6
-) -> tuple[np.ndarray, np.ndarray]:
-    """A head that is thrown about and then held. -> tails (F, S, 3), joint matrices (F, J, 4, 4) of character 0."""
+def swing(rig: Rig, seconds: float, dt: float = DT, still_after: float = 0.6) -> tuple[np.ndarray, np.ndarray]:
+    """A head that is thrown about and then held. rig: bound by identities, so that its skin matrices are its joints'.
+    -> tails (F, S, 3), joint matrices (F, J, 4, 4)."""
     state = rig.start(1)
     tails, models = [], []
     for k in range(round(seconds / dt)):
         t = min(k * dt, still_after)
         q = np.tile(quat.IDENTITY, (1, len(REFERENCE), 1))
         q[:, REFERENCE.index["head"]] = quat.from_axis_angle(np.array([0.3, 1, 0]), np.array(0.9 * np.sin(9 * t)))
-        model = rig.joint_matrices(pose_of(q))
-        state = advance_springs(rig.springs, state, model, dt)
+        state, model = rig.advance(state, pose_of(q), dt)
         tails.append(state.tail[0])
         models.append(model[0])
     return np.array(tails), np.array(models)
 
 
 def test_springs_settle_and_keep_their_lengths() -> None:
-    rig = make_rig(springs=True, colliders=False)
+    rig = make_rig(springs=True, colliders=False, bind=BARE)
     tails, models = swing(rig, 5.0)
     assert np.abs(np.diff(tails[:20], axis=0)).max() > 0.005
     assert np.abs(np.diff(tails[-5:], axis=0)).max() < 2e-4
@@ -165,7 +178,7 @@ def test_springs_settle_and_keep_their_lengths() -> None:
 
 
 def test_springs_never_enter_their_colliders() -> None:
-    rig = make_rig(springs=True)
+    rig = make_rig(springs=True, bind=BARE)
     tails, models = swing(rig, 3.0, still_after=2.5)
     ball = models[:, rig.skeleton.index["neck"]] @ np.array([0.0, 0.0, -0.15, 1.0])
     distance = np.linalg.norm(tails - ball[:, None, :3], axis=-1)
@@ -178,7 +191,7 @@ def test_springs_never_enter_their_colliders() -> None:
 
 
 def test_springs_hang_alike_at_thirty_and_sixty_ticks_a_second() -> None:
-    rig = make_rig(springs=True, colliders=False)
+    rig = make_rig(springs=True, colliders=False, bind=BARE)
     slow, _ = swing(rig, 3.0)
     fast, _ = swing(rig, 3.0, dt=DT / 2)
     np.testing.assert_allclose(slow[-1], fast[-1], atol=3e-3)
@@ -186,7 +199,7 @@ def test_springs_hang_alike_at_thirty_and_sixty_ticks_a_second() -> None:
 
 
 def test_at_sixty_ticks_a_step_is_vrms_own() -> None:
-    rig = make_rig(springs=True, colliders=False)
+    rig = make_rig(springs=True, colliders=False, bind=BARE)
     tails, models = swing(rig, 0.5, dt=1 / 60)
     head = rig.skeleton.index["tail0"]
     above = models[:, rig.skeleton.index["head"]]
@@ -214,3 +227,26 @@ def test_bad_chains_and_rigs_are_refused() -> None:
         Rig.from_arrays(["a"], np.array([-1]), np.zeros((1, 3)))
     with pytest.raises(BadInput, match="inverse bind"):
         Rig.from_arrays(names, np.array(parents), np.array(rest), np.zeros((3, 4, 4)))
+
+
+def test_what_hangs_on_a_swinging_joint_swings_along() -> None:
+    """A strand that branches off another, and a joint that no chain has."""
+    names, parents, rest = rig_arrays()
+    first = names.index("tail0")
+    for parent in (first + 1, first + 1, len(names) + 1):
+        names.append(f"more{len(names)}")
+        parents.append(parent)
+        rest.append(np.array([0.05, -0.05, 0.0]))
+    ornament, branch = len(names) - 3, len(names) - 2
+    chains = [
+        SpringChain(joints, (0.2,) * n, (0.3,) * n, ((0.0, -1.0, 0.0),) * n, (0.3,) * n, (0.0,) * n)
+        for joints, n in ((tuple(range(first, first + 4)), 3), ((branch, branch + 1), 1))
+    ]
+    bare = np.tile(np.eye(4), (len(names), 1, 1))
+    rig = Rig.from_arrays(names, np.array(parents), np.array(rest), bare, chains=chains)
+    _, models = swing(rig, 0.6)
+    carrier = models[:, first + 1]
+    assert np.ptp(carrier[:, 0, 3]) > 0.02
+    wanted = carrier @ np.array([0.05, -0.05, 0.0, 1.0])
+    for joint in (ornament, branch):
+        np.testing.assert_allclose(models[:, joint, :3, 3], wanted[:, :3], atol=1e-5)

@@ -68,7 +68,7 @@ def still(n: int = 1) -> Pose:
 def vertices(avatar: Avatar, pose: Pose) -> np.ndarray:
     """(V, 3) where the mesh is in a pose."""
     geometry = avatar.model.geometry
-    matrix = avatar.rig.skin_matrices(avatar.rig.joint_matrices(pose))[0].astype(np.float64)
+    matrix = avatar.rig.advance(avatar.rig.start(1), pose, 0.0)[1][0].astype(np.float64)
     place = np.zeros((len(geometry.position), 3))
     for corner in range(4):
         rows = matrix[geometry.joint[:, corner]]
@@ -86,7 +86,7 @@ def test_every_real_file_loads_or_is_refused_for_a_stated_reason(shared_data: Pa
                 open_avatar(path)
             continue
         avatar = open_avatar(path)
-        skin = avatar.rig.skin_matrices(avatar.rig.joint_matrices(still()))
+        _, skin = avatar.rig.advance(avatar.rig.start(1), still(), 0.0)
         assert skin.shape == (1, avatar.model.joint_count, 4, 4), path.name
         assert np.isfinite(skin).all(), path.name
         assert avatar.licence, path.name
@@ -167,7 +167,7 @@ def test_eye_bones_follow_the_gaze_by_the_files_range(shared_data: Path):
     left = Pose(pose.rotation, pose.root, np.array([[1.0, 0.0]]), pose.blink, pose.breath)
     turned = avatar.rig.joint_matrices(left)[0]
     assert avatar.rig.eyes is not None
-    for joint in avatar.rig.eyes.joints.tolist():
+    for joint in (avatar.rig.eyes.left, avatar.rig.eyes.right):
         delta = turned[joint, :3, :3] @ ahead[joint, :3, :3].T
         angle = np.rad2deg(np.arctan2(delta[0, 2], delta[2, 2]))
         assert 1.0 < angle < 20.0, "to the character's left is toward +X"

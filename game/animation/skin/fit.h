@@ -1,0 +1,46 @@
+// What the fit knows of the reference and of another body; written by Python (game/animation/fitting.py).
+#pragma once
+
+#include "../limbs.h"
+#include "rig.h"
+
+enum {
+    FIGURE = 19,  // torso, head, arms and legs
+    REGIONS = 4,  // chest, spine, hips: the trunk; head
+    TRUNK = 3,
+    LIMBS = 4,  // arms, legs
+};
+
+// A measure at which something counts not at all, and at which fully.
+typedef struct { float none, full; } Limit;
+
+typedef struct { Vec3 centre, radius; } Region;  // in its joint's frame
+
+typedef struct {
+    int32_t joint;  // of the figure
+    Region reference, mine;
+} BodyPart;
+
+typedef struct {
+    int32_t turn, parent;  // its rotation in a pose; a joint of the figure
+    Vec3 reference, mine;  // from its parent on both bodies
+} FigureJoint;
+
+typedef struct {
+    int32_t above, upper, lower, end;  // joints of the figure
+    Limb bones;
+    Vec3 foot_reference, foot;  // where it stands at rest on both bodies
+} FigureLimb;
+
+struct Fit {
+    FigureJoint joint[FIGURE];
+    FigureLimb limb[LIMBS];
+    BodyPart part[REGIONS];
+    Vec3 hips_reference, hips;  // where they rest
+    Vec3 palm[2];               // from the wrist, in the hand's frame
+    float leg, hand, arm[2];    // this body's lengths over the reference's
+    float table_m;
+    float clear, middle;  // a palm further out than the first is out of a region; nearer to its middle than the second
+                          // it may be anywhere
+    Limit beside_body, low_back, high_back, beside_table, above_table, low, together;
+};
