@@ -99,7 +99,7 @@ def set_variable(session: Session, name: str, value: float | bool | str) -> None
     kind = {"number": float, "bool": bool, "text": str}[script.variables[name].type]
     if type(value) is not kind:
         raise BadInput(f"variable {name}", expected=f"a {script.variables[name].type}", seen=value)
-    story = replace(talk.story, variables={**talk.story.variables, name: value})
+    story = talk.story.with_variable(name, value)
     session.world = replace(session.world, talk=replace(talk, story=story))
     session.designed = True
 

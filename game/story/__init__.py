@@ -9,7 +9,8 @@ from game.story.fix import fix_file
 from game.story.lint import lint_files
 from game.story.model import Item, NodeDef, Person, Script
 from game.story.reader import load_script, shipped_stalls
-from game.story.state import Memory, StoryState, afternoon_of, begin, memory_of, restore, save
+from game.story.standing import StoryState
+from game.story.state import Memory, afternoon_of, begin, memory_of, restore, save
 from game.story.surroundings import load_person
 from game.story.text import Text, wrap
 from game.story.timing import TimedText, TimedWord

@@ -99,8 +99,7 @@ def timer_at(timer: TimerDef | None, choices: Sequence[Choice]) -> Timer | None:
     return Timer(timer.seconds, timer.default)
 
 
-@dataclass(frozen=True)
-class Beat:
+class Beat(NamedTuple):
     """What happens until the player is asked again. ``ended``: the name of an ending, None while the talk goes on."""
 
     node: str

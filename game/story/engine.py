@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 from game.core.errors import BadInput
-from game.story.beat import Beat, Choice, Event, Outcome, Spoken, Start, Stimulus, Warp, timer_at
+from game.story.beat import Beat, Choice, Chose, Event, Spoken, Start, Stimulus, Warp, timer_at
 from game.story.chance import Lots, uniforms
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Script
-from game.story.prepared import prepared
-from game.story.ready import Pair, ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way
-from game.story.state import Past, StoryState
+from game.story.passages import Stretch
+from game.story.ready import ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way, spoken
+from game.story.standing import Log, StoryState
+from game.story.state import restore, save
 from game.story.text import Text
 from game.story.vocabulary import OUTCOMES, Value, environment
 
@@ -39,7 +39,10 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     if isinstance(event, Start) == state.started and not isinstance(event, Warp):
         raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
     run = _Run(script, state, env)
-    if isinstance(event, Start):
+    if isinstance(event, Chose):
+        outcome = None if event.outcome is None else _known(event.outcome, script)
+        run.walk(run.choose(event.choice), outcome)
+    elif isinstance(event, Start):
         came_back = script.outcomes.get("came_back") if state.visit > 1 else None
         run.walk(came_back or script.start, None)
     elif isinstance(event, Warp):
@@ -47,12 +50,9 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
             raise BadInput("node", expected=f"one of {script.stall}", seen=event.node)
         run.returns = ()
         run.walk(event.node, None)
-    elif isinstance(event, Outcome):
-        run.walk(state.node, _known(event.kind, script))
     else:
-        outcome = None if event.outcome is None else _known(event.outcome, script)
-        run.walk(run.choose(event.choice), outcome)
-    return run.result()
+        run.walk(state.node, _known(event.kind, script))
+    return run.state(), run.beat()
 
 
 def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -63,15 +63,13 @@ def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple
     if not state.started:
         return state, Beat("", (), (), (), None)
     run = _Run(script, state, env)
-    run.lines = [run.spoken(run.ready.line(script.lines[name])) for name in state.last_lines]
-    again = [run.ready.choice(script.choices[choice]) for choice, _ in state.offered]
-    if state.ended is None and not any(run.usable(choice) for choice in again):
+    if state.ended is None and not any(run.usable(choice) for choice, _ in run.laid):
         run.wait_at(run.ready.node(state.node))
     else:
-        texts = [text for _, text in state.offered]
-        run.lay([(choice, _wording(choice, text)) for choice, text in zip(again, texts, strict=True)])
-    fresh, beat = run.result()
-    return replace(fresh, last_lines=state.last_lines), beat
+        run.lay(run.laid)
+    resumed = run.state()._replace(log=run.before.log)
+    run.lines = tuple([run.spoken(run.ready.line(script.lines[name])) for name in run.before.last_lines])
+    return resumed, run.beat()
 
 
 def _known(kind: str, script: Script) -> str:
@@ -80,48 +78,52 @@ def _known(kind: str, script: Script) -> str:
     return kind
 
 
-def _wording(choice: ReadyChoice, text: str) -> ReadyLine:
-    """One of a choice's wordings by its id, the first where it has none such."""
-    return next((line for line in choice.texts if line.id == text), choice.texts[0])
+class _Run(Scope):
+    """The working copy of where a talk stands during one step. said, chosen, passed: as bits; told: how the player's
+    line landed, ``veiled`` where the words hide it."""
 
-
-class _Run:
-    """The working copy of a state during one step. said, chosen: as bits; seen: ids of all that was said, chosen or
-    visited, on earlier visits, too."""
-
+    names: dict[str, Value]
     __slots__ = (
-        "ahead", "choices", "chosen", "counter", "earlier", "ended", "heard", "lines", "names", "node", "pairs", "past",
-        "ready", "returns", "said", "scope", "script", "seen", "state", "stimuli", "told", "turn", "variables",
-        "visits",
+        "ahead", "before", "chosen", "counter", "ended", "laid", "lines", "node", "nodes", "options",
+        "passed", "ready", "returns", "said", "script", "stimuli", "talk", "told", "turn", "variables",
     )  # fmt: skip
 
-    def __init__(self, script: Script, state: StoryState, env: Mapping[str, Value]) -> None:
-        self.script, self.state = script, state
-        self.node, self.counter, self.turn, self.ended = state.node, state.counter, state.turn, state.ended
-        # The state's own until something is added.
-        self.returns, self.variables = state.returns, state.variables
-        self.heard: dict[str, int] = state.heard  # type: ignore[assignment]
-        self.visits = dict(state.visits)
-        past = self.past = Past.of(script, state)
-        self.said, self.chosen, self.earlier = past.said, past.chosen, past.earlier
-        self.seen = set(past.seen)
+    def __init__(self, script: Script, before: StoryState, env: Mapping[str, Value]) -> None:
+        if before.talk.ready.script is not script:
+            before = restore(script, save(before))
+        (
+            self.talk, self.node, _, self.ended, self.counter, self.turn, self.returns, self.said, self.chosen,
+            self.passed, self.variables, self.laid, _,
+        ) = self.before = before  # fmt: skip
+        ready = self.ready = self.talk.ready
+        self.script = ready.script
         names = self.names = environment(env)
-        names.update(state.variables)
-        names["item"], names["visit"] = state.item, float(state.visit)
+        names.update(self.variables)
+        names["item"], names["visit"] = ready.item, float(self.talk.visit)
         told = str(names["quality"]) if names["tells"] else "none"
         self.told = "veiled" if told == "none" else told
-        self.ready = prepared(script, state.item)
-        self.scope = Scope(names, self.visits, self.seen)
         self.ahead: list[float] = []
-        self.lines: list[Spoken] = []
-        self.stimuli: list[Stimulus] = []
-        self.pairs: tuple[Pair, ...] = ()
-        self.choices: tuple[Choice, ...] = ()
+        self.nodes: tuple[str, ...] = ()
+        self.lines: tuple[Spoken, ...] = ()
+        self.stimuli: tuple[Stimulus, ...] = ()
+        self.options: tuple[Choice, ...] = ()
+
+    # --- what conditions ask ---------------------------------------------------------------------------------
+    def visits(self, node: str) -> int:
+        return self.before.visits.get(node, 0) + self.nodes.count(node)
+
+    def seen(self, name: str) -> bool:
+        return bool(self.everything & self.script.bits[name])
+
+    @property
+    def everything(self) -> int:
+        """What was said, chosen or passed, on earlier visits, too, as bits."""
+        return self.said | self.chosen | self.passed | self.talk.earlier_bits
 
     def chance(self) -> float:
         # Numbers come cheaper by the half dozen; those that nobody takes are drawn again in the next step.
         if not self.ahead:
-            self.ahead = uniforms(self.state.seed, self.counter + 1, _AHEAD)
+            self.ahead = uniforms(self.talk.seed, self.counter + 1, _AHEAD)
             self.ahead.reverse()
         self.counter += 1
         return self.ahead.pop()
@@ -129,32 +131,37 @@ class _Run:
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
         """Take a choice: its words, effects and feelings; the node it leads to."""
-        texts, known = dict(self.state.offered), self.script.choices.get(choice_id)
-        choice = None if known is None or choice_id not in texts else self.ready.choice(known)
-        if choice is None or not self.usable(choice):
-            raise BadInput("choice", expected=" | ".join(texts) or "none", seen=choice_id)
+        choice, line = self.taken(choice_id)
         if not choice.silent:
-            self.say(_wording(choice, texts[choice_id]))
+            self.say(line)
         if choice.act != "offer" and self.names["offer_result"] != "none":
             # A line that carries an offer is followed by the words of an offer.
             offer = self.ready.offer(self.told)
             if offer is not None:
                 self.say_one(offer)
         self.chosen |= choice.bit
-        self.seen.add(choice_id)
         if choice.effects:
             # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
             self.apply(choice.effects)
         return choice.way or self.way(choice.ways)
 
+    def taken(self, choice_id: str) -> tuple[ReadyChoice, ReadyLine]:
+        """A choice on the table that can still be taken, and its wording."""
+        for laid in self.laid:
+            choice = laid[0]
+            if choice.id == choice_id and (choice.always or self.usable(choice)):
+                return laid
+        offered = " | ".join([choice.id for choice, _ in self.laid])
+        raise BadInput("choice", expected=offered or "none", seen=choice_id)
+
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
-        ready, scope, told, visits, seen = self.ready, self.scope, self.told, self.visits, self.seen
-        nodes = ready.nodes
+        ready, told = self.ready, self.told
+        passages = ready.passages(told)
         for _ in range(_MAX_STEPS):
-            node = nodes.get(target) or ready.node(self.resolved(target))
-            name = node.id
+            passage = passages.get(target) or ready.passage(self.resolved(target), told)
+            node = passage.last
             if pending is not None:
                 ending = OUTCOMES[pending]
                 if node.waits or (ending and node.end is not None):
@@ -163,28 +170,20 @@ class _Run:
                     if ending:
                         closing, self.returns = pending, ()
                     elif outcome_node is not None:
-                        self.push(name)
+                        self.push(node.id)
                     pending = None
                     if outcome_node is not None:
                         target = outcome_node
                         continue
             if closing is not None and node.waits:
                 break
-            self.node = name
-            visits[name] = visits.get(name, 0) + 1
-            seen.add(name)
-            if node.effects:
-                self.apply(node.effects)
-            if node.stimulus is not None:
-                self.stimuli.append(node.stimulus)
-            for test, group in node.says.get(told) or ready.says(node, told):
-                if test is None or test(scope):
-                    self.say_one(group)
+            self.node = node.id
+            self.follow(passage.stretches)
             if node.end is not None:
                 self.ended = node.end
                 return
             if node.waits:
-                if self.wait_at(node) or name == self.script.home:
+                if self.wait_at(node) or node.id == self.script.home:
                     return
                 target = HOME
             elif node.call is None:
@@ -197,6 +196,20 @@ class _Run:
         else:
             self.node = self.script.home
             self.wait_at(ready.node(self.node))
+
+    def follow(self, stretches: Sequence[Stretch]) -> None:
+        """Do what happens on the way."""
+        for nodes, passed, lines, said, stimuli, effects, says in stretches:
+            self.nodes += nodes
+            self.passed |= passed
+            self.lines += lines
+            self.said |= said
+            self.stimuli += stimuli
+            if effects:
+                self.apply(effects)
+            for test, group in says:
+                if test is None or test(self):
+                    self.say_one(group)
 
     def resolved(self, target: str) -> str:
         """A node's own name; ``back`` and ``home`` looked up."""
@@ -215,91 +228,87 @@ class _Run:
 
     def way(self, ways: Sequence[Way]) -> str:
         for test, target in ways:
-            if test is None or test(self.scope):
+            if test is None or test(self):
                 return target
         return HOME
 
     def apply(self, effects: Sequence[ReadyEffect]) -> None:
-        names = self.names
+        names, variables = self.names, dict(self.variables)
         for name, value in effects:
-            names[name] = value(self.scope)
-        self.variables = {name: names[name] for name in self.script.variables}
+            names[name] = variables[name] = value(self)
+        self.variables = variables
 
     # --- speaking --------------------------------------------------------------------------------------------
     def say_one(self, group: ReadyGroup) -> None:
         """One line of those that can be said now."""
         line = group.only
         if line is not None:
-            if (line.again or not self.said & line.bit) and (line.test is None or line.test(self.scope)):
+            if (line.again or not self.said & line.bit) and (line.test is None or line.test(self)):
                 self.say(line)
         else:
-            lots = group.left(self.said, self.earlier).usable(self.scope)
+            lots = group.left(self.said, self.talk.earlier_bits).usable(self)
             if group.recalls:
-                lots = group.least_heard(lots, self.heard)
+                lots = group.least_heard(lots, self.times_heard)
             if lots.items:
                 self.say(lots.only or lots.draw(self.chance()))
+
+    def times_heard(self, name: str) -> int:
+        """How often a line was said in this talk."""
+        return self.before.heard.get(name, 0) + [line.id for line in self.lines].count(name)
 
     def say(self, line: ReadyLine) -> None:
         if not self.said & line.bit:
             self.said |= line.bit
-            self.seen.add(line.id)
         elif not line.again:
             return
-        if line.again:
-            if self.heard is self.state.heard:
-                self.heard = dict(self.heard)
-            self.heard[line.id] = self.heard.get(line.id, 0) + 1
-        self.lines.append(line.fixed or self.spoken(line))
+        self.lines += (line.fixed or self.spoken(line),)
         if line.stimulus is not None:
-            self.stimuli.append(line.stimulus)
+            self.stimuli += (line.stimulus,)
 
     def holds(self, line: ReadyLine) -> bool:
         """Whether a line fits how the player's line landed, and its condition holds."""
-        return line.when in (None, self.told) and (line.test is None or bool(line.test(self.scope)))
+        return line.when in (None, self.told) and (line.test is None or bool(line.test(self)))
 
     def spoken(self, line: ReadyLine) -> Spoken:
         key = tuple([self.names.get(name) for name in line.asks])
         known = line.spoken.get(key)
         if known is None:
-            given = line.line
-            text = self.filled(given.text)
-            known = Spoken(given.id, given.speaker, text.en, text.ja, given.face, given.tone, given.gesture)
+            known = spoken(line.line, self.filled(line.line.text))
             line.spoken.keep(key, known)
             line.fixed = None if line.asks else known
         return known
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
         """The words with the names in braces filled in, ``keep`` left as it stands."""
-        return filled(self.script, self.state.item, self.names, text, keep=keep)
+        return filled(self.script, self.ready.item, self.names, text, keep=keep)
 
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ReadyChoice) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        if self.chosen & choice.used or (choice.gone and choice.id in self.seen):
+        if self.chosen & choice.used or (choice.gone and choice.gone & self.everything):
             return False
-        return choice.shown is None or bool(choice.shown(self.scope))
+        return choice.shown is None or bool(choice.shown(self))
 
     def usable(self, choice: ReadyChoice) -> bool:
         """Whether it may be taken as well."""
-        return self.shown(choice) and (choice.needs is None or bool(choice.needs(self.scope)))
+        return self.shown(choice) and (choice.needs is None or bool(choice.needs(self)))
 
     def wait_at(self, node: ReadyNode) -> bool:
         """Lay the choices of a node on the table; False where none can be taken."""
         # A stream of its own, by turns: what was said before must not shift which lines are offered.
         self.turn += 1
         if node.table is not None:
-            self.pairs, self.choices = node.table
+            self.laid, self.options = node.table
             return True
         drawn: Sequence[ReadyChoice] = ()
         if node.pool is not None:
-            seen = self.earlier | self.said | self.chosen
-            seed = self.state.seed ^ _DRAW_STREAM
-            drawn = draw_choices(node.pool, self.scope, self.chosen, seen, seed, self.turn * 64)
+            seed = self.talk.seed ^ _DRAW_STREAM
+            drawn = draw_choices(node.pool, self, self.chosen, self.everything, seed, self.turn * 64)
         offered = [(choice, self.variant(choice)) for choice in drawn]
         offered += [(choice, self.variant(choice)) for choice in node.laid if choice.always or self.shown(choice)]
         taken = self.lay(offered, usable=len(drawn))
         if node.always:
-            node.table = (self.pairs, self.choices)
+            node.table = (self.laid, self.options)
         return taken
 
     def lay(self, offered: Sequence[tuple[ReadyChoice, ReadyLine]], *, usable: int = 0) -> bool:
@@ -311,8 +320,7 @@ class _Run:
                 taken = True
             else:
                 options.append(self.greyed(choice, line))
-        self.pairs = tuple([line.pair for _, line in offered])
-        self.choices = tuple(options)
+        self.laid, self.options = tuple(offered), tuple(options)
         return taken
 
     def variant(self, choice: ReadyChoice) -> ReadyLine:
@@ -346,31 +354,18 @@ class _Run:
         reason = None if why is None else self.filled(why)
         return Choice(choice.id, choice.act, text.en, text.ja, False, reason, choice.choice.feel)
 
-    def result(self) -> tuple[StoryState, Beat]:
+    # --- what came of it -------------------------------------------------------------------------------------
+    def state(self) -> StoryState:
+        """Where the talk stands now."""
         if self.ended is not None:
-            self.pairs, self.choices = (), ()
-        timer = self.script.nodes[self.node].timer if self.ended is None and self.node else None
-        state, past = self.state, self.past
-        fresh = StoryState.stepped(
-            {
-                "stall": state.stall,
-                "item": state.item,
-                "seed": state.seed,
-                "visit": state.visit,
-                "counter": self.counter,
-                "turn": self.turn,
-                "node": self.node,
-                "started": True,
-                "ended": self.ended,
-                "returns": self.returns,
-                "visits": self.visits,
-                "heard": self.heard,
-                "earlier": state.earlier,
-                "variables": self.variables,
-                "offered": self.pairs,
-                "last_lines": tuple([line.id for line in self.lines]),
-                "past": Past(past.script, self.said, self.chosen, past.earlier, self.seen, past.strange),
-            }
-        )
-        timed = None if timer is None else timer_at(timer, self.choices)
-        return fresh, Beat(self.node, tuple(self.lines), self.choices, tuple(self.stimuli), self.ended, timed)
+            self.laid, self.options = (), ()
+        return StoryState(
+            self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.said, self.chosen,
+            self.passed, self.variables, self.laid, Log(self.talk, self.before.log, self.nodes, self.lines),
+        )  # fmt: skip
+
+    def beat(self) -> Beat:
+        """What was said and what can be chosen."""
+        timer = self.ready.node(self.node).timer if self.ended is None and self.node else None
+        timed = None if timer is None else timer_at(timer, self.options)
+        return Beat(self.node, self.lines, self.options, self.stimuli, self.ended, timed)

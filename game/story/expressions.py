@@ -39,10 +39,18 @@ class ExpressionError(BadInput):
 class Scope:
     """What an expression can see: values by name, visits by node, and everything said, chosen or visited."""
 
-    __slots__ = ("names", "seen", "visits")
+    __slots__ = ("_seen", "_visits", "names")
 
     def __init__(self, names: Mapping[str, Value], visits: Mapping[str, int], seen: Container[str]) -> None:
-        self.names, self.visits, self.seen = names, visits, seen
+        self.names, self._visits, self._seen = names, visits, seen
+
+    def visits(self, node: str) -> int:
+        """How often a node was passed."""
+        return self._visits.get(node, 0)
+
+    def seen(self, name: str) -> bool:
+        """Whether a line was said, a choice taken or a node passed, now or on an earlier visit."""
+        return name in self._seen
 
 
 @dataclass(frozen=True)
@@ -155,7 +163,7 @@ class _Compiler:
                 if attr not in self.names.nodes:
                     raise self.fail("E_UNKNOWN_NAME", f"no node {attr!r}", node, _hint(attr, self.names.nodes))
                 self.visits.add(attr)
-                return "number", lambda scope: float(scope.visits.get(attr, 0))
+                return "number", lambda scope: float(scope.visits(attr))
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 inner = self.wanted(operand, "bool", depth)
                 return "bool", lambda scope: not inner(scope)
@@ -174,7 +182,7 @@ class _Compiler:
                     hint = _hint(name, self.names.ids)
                     raise self.fail("E_UNKNOWN_NAME", f"no line, choice or node {name!r}", argument, hint)
                 self.seen.add(name)
-                return "bool", lambda scope: name in scope.seen
+                return "bool", lambda scope: scope.seen(name)
             case ast.Call(func=ast.Name(id="min" | "max" as which), args=args, keywords=[]) if 2 <= len(args) <= 8:
                 numbers = [self.wanted(arg, "number", depth) for arg in args]
                 pick = min if which == "min" else max

@@ -8,6 +8,7 @@ from game.story.beat import Choice, Spoken
 from game.story.forms import PERSON_SLOTS, number_text, person_word
 from game.story.model import ChoiceDef, LineDef, Script
 from game.story.prepared import prepared
+from game.story.ready import spoken
 from game.story.text import Text, fill
 from game.story.vocabulary import ENV, Value, environment
 
@@ -49,8 +50,7 @@ def filled(script: Script, item: str, names: Mapping[str, Value], text: Text, *,
 
 def rehearse_line(script: Script, item: str, line: LineDef, env: Mapping[str, Value]) -> Spoken:
     """A line as it would be said, whether or not it could be said now. env: as in ``advance``."""
-    text = filled(script, item, _names(script, item, env), line.text)
-    return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
+    return spoken(line, filled(script, item, _names(script, item, env), line.text))
 
 
 def rehearse_choice(script: Script, item: str, choice: ChoiceDef, line: LineDef, env: Mapping[str, Value]) -> Choice:

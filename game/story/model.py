@@ -264,13 +264,13 @@ class Script:
 
     @cached_property
     def bits(self) -> Mapping[str, int]:
-        """By the id of a line or choice, one bit of a whole number: a set of them is a number. Nodes have none."""
+        """By the id of a line, choice or node, one bit of a whole number: a set of them is a number."""
         return {name: 1 << at for at, name in enumerate(self.ids)}
 
     @cached_property
     def ids(self) -> tuple[str, ...]:
-        """The ids of lines and choices in the order of their bits."""
-        return tuple({**self.lines, **self.choices})
+        """The ids of lines, choices and nodes in the order of their bits; what has the same id has the same bit."""
+        return tuple({**self.lines, **self.choices, **self.nodes})
 
     @cached_property
     def lines(self) -> Mapping[str, LineDef]:

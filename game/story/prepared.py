@@ -13,6 +13,7 @@ from typing import Literal
 
 from game.story.expressions import Expression, Scope
 from game.story.model import HOME, Branch, ChoiceDef, LineDef, NodeDef, SayDef, Script
+from game.story.passages import Passage, passage_from
 from game.story.pools import Act, Pool
 from game.story.ready import Few, ReadyChoice, ReadyGroup, ReadyLine, ReadyNode, ReadySay, Test, Way, never
 from game.story.text import Text
@@ -41,6 +42,7 @@ class Prepared:
         self.nodes: dict[str, ReadyNode] = {}
         self._lines: dict[str, ReadyLine] = {}
         self._choices: dict[str, ReadyChoice] = {}
+        self._passages: dict[str, dict[str, Passage]] = {}
         self._offers: dict[str, ReadyGroup | None] = {}
         self._asked: dict[str, Test] = {}
         self._money: Few[int, Text] = Few(4096)
@@ -50,17 +52,41 @@ class Prepared:
         found = self.nodes.get(name)
         if found is None:
             found = self.nodes[name] = ReadyNode(self.script.nodes[name], self)
-            if name == self.script.home:
-                self.nodes[HOME] = found
         return found
 
-    def line(self, line: LineDef, choice: str = "") -> ReadyLine:
-        """A line, and the choice that it words."""
+    def passages(self, told: str) -> dict[str, Passage]:
+        """The passages made so far where the player's line landed so, by the names of the ways that lead to them."""
+        found = self._passages.get(told)
+        if found is None:
+            found = self._passages[told] = {}
+        return found
+
+    def passage(self, name: str, told: str) -> Passage:
+        """The passage that begins with a node, where the player's line landed so."""
+        known = self.passages(told)
+        found = known.get(name)
+        if found is None:
+            found = passage_from(self.node(name), self._way_to, lambda node: self.says(node, told))
+            known[name] = found
+            if name == self.script.home:
+                known[HOME] = found
+        return found
+
+    def _way_to(self, target: str) -> ReadyNode | None:
+        return self.node(target) if target in self.script.nodes else None
+
+    def laid(self, choice: ChoiceDef, text: str) -> tuple[ReadyChoice, ReadyLine]:
+        """A choice in one of its wordings by its id, the first where it has none such."""
+        ready = self.choice(choice)
+        return ready, next((line for line in ready.texts if line.id == text), ready.texts[0])
+
+    def line(self, line: LineDef) -> ReadyLine:
+        """A line."""
         found = self._lines.get(line.id)
         if found is None:
             test = self.open(line.condition)
             test = never if test is False else test
-            found = self._lines[line.id] = ReadyLine(line, self.script.bits[line.id], test, choice)
+            found = self._lines[line.id] = ReadyLine(line, self.script.bits[line.id], test)
         return found
 
     def choice(self, choice: ChoiceDef) -> ReadyChoice:
@@ -113,11 +139,7 @@ class Prepared:
 
     def _question(self, choice: ReadyChoice) -> Test | None:
         """What must hold for a choice to be taken, besides that it is not used up."""
-        tests = [test for test in (choice.shown, choice.needs) if test is not None]
-        if choice.gone and choice.id in self.script.nodes:
-            # A node of the same name counts as seen, and nodes have no bits.
-            tests.insert(0, lambda scope: choice.id not in scope.visits)
-        return _all_of(tests)
+        return _all_of([test for test in (choice.shown, choice.needs) if test is not None])
 
     def ways(self, branches: Iterable[Branch]) -> tuple[Way, ...]:
         """Where to go on, up to the first way that is always open."""

@@ -6,7 +6,7 @@ table that fills as talks go on.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -15,14 +15,15 @@ from game.story.chance import Lots
 from game.story.expressions import Scope
 from game.story.forms import PERSON_SLOTS
 from game.story.model import ChoiceDef, EffectDef, LineDef, NodeDef, Order
+from game.story.text import Text
 from game.story.vocabulary import Value
 
 if TYPE_CHECKING:
     from game.story.prepared import Prepared
 
 __all__ = [
-    "Few", "Left", "Pair", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode", "ReadySay", "Test",
-    "Way", "never",
+    "Few", "Laid", "Left", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode", "ReadySay", "Test",
+    "Way", "never", "spoken",
 ]  # fmt: skip
 
 Test = Callable[[Scope], Any]
@@ -32,8 +33,8 @@ Way = tuple[Test | None, str]
 """What must hold for going on to a node."""
 ReadyEffect = tuple[str, Callable[[Scope], Value]]
 """A variable and its new value."""
-Pair = tuple[str, str]
-"""The ids of a choice on the table and of its wording."""
+Laid = tuple[tuple["ReadyChoice", "ReadyLine"], ...]
+"""Choices on the table, each with its wording."""
 
 _FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
 """Names in braces that mean the same throughout all talks about an item."""
@@ -62,6 +63,11 @@ class Few(dict[Key, Kept]):
         return value
 
 
+def spoken(line: LineDef, text: Text) -> Spoken:
+    """A line with its words filled in."""
+    return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
+
+
 def never(scope: Scope) -> bool:
     """The test that nothing passes."""
     return False
@@ -70,25 +76,25 @@ def never(scope: Scope) -> bool:
 class ReadyLine:
     """A line in talks about an item.
 
-    bit: its place among everything said; test: what must hold, as far as the item does not settle it; pair: the ids of
-    a choice and of this, its wording. spoken, option: the line as it is said and as it is offered, by the values of the
-    names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is left open); fixed, offered:
-    where it has none.
+    bit: its place among everything said; test: what must hold, as far as the item does not settle it; always: the line
+    as it is said, where nothing can keep it from being said so. spoken, option: the line as it is said and as it is
+    offered, by the values of the names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is
+    left open); fixed, offered: where it has none.
     """
 
     __slots__ = (
-        "again", "asks", "bit", "fixed", "id", "keeps", "line", "offered", "option", "pair", "spoken", "stimulus",
+        "again", "always", "asks", "bit", "fixed", "id", "keeps", "line", "offered", "option", "spoken", "stimulus",
         "test", "weight", "when",
     )  # fmt: skip
 
-    def __init__(self, line: LineDef, bit: int, test: Test | None, choice: str) -> None:
+    def __init__(self, line: LineDef, bit: int, test: Test | None) -> None:
         self.line, self.id, self.again, self.when, self.bit, self.test = line, line.id, line.again, line.when, bit, test
         self.weight = line.weight
         self.asks = tuple(sorted(line.text.names - _FIXED_NAMES))
         self.keeps = tuple([name for name in self.asks if name != "offer"])
         self.stimulus = Stimulus(line.feel, line.id) if line.feel else None
-        self.pair = (choice, line.id)
-        self.fixed: Spoken | None = None
+        self.fixed = None if line.text.names else spoken(line, line.text)
+        self.always = self.fixed if line.again and test is None else None
         self.spoken: Few[tuple[Value | None, ...], Spoken] = Few(_MOST_WORDS)
         self.offered: Choice | None = None
         self.option: Few[tuple[Value | None, ...], Choice] = Few(_MOST_WORDS)
@@ -167,10 +173,10 @@ class ReadyGroup:
             lines = [line for line in lines if not line.bit & earlier] or lines
         return lines[:1] if self.order == "listed" else lines
 
-    def least_heard(self, lots: Lots[ReadyLine], heard: Mapping[str, int]) -> Lots[ReadyLine]:
+    def least_heard(self, lots: Lots[ReadyLine], heard: Callable[[str], int]) -> Lots[ReadyLine]:
         """Those heard least often in this talk. heard: how often, by id."""
-        least = min([heard.get(line.id, 0) for line in lots.items], default=0)
-        return Lots([line for line in lots.items if heard.get(line.id, 0) == least])
+        times = [heard(line.id) for line in lots.items]
+        return Lots([line for line, count in zip(lots.items, times, strict=True) if count == min(times)])
 
 
 class ReadyChoice:
@@ -198,7 +204,7 @@ class ReadyChoice:
         self.shown = never if shown is False else shown
         self.needs = never if needs is False else needs
         self.always = self.shown is None and self.needs is None and not (self.used or self.gone)
-        self.texts = tuple([ready.line(line, choice.id) for line in choice.texts])
+        self.texts = tuple([ready.line(line) for line in choice.texts])
         self.mask = sum([line.bit for line in self.texts])
         self.fits = all(line.when is None and line.condition is None for line in choice.texts)
         self.fresh: Few[int, Lots[ReadyLine]] = Few()
@@ -207,18 +213,20 @@ class ReadyChoice:
 
 
 class ReadyNode:
-    """A node in talks about an item. after: what is kept for coming back from its call; says: what it can say, by how
-    the player's line landed; way: where it leads whatever holds; pool: what it draws from; laid: its own choices, then
-    the standing ones. table: all that lies on it where that is the same in every talk; whoever lays it keeps it here.
+    """A node in talks about an item. after: what is kept for coming back from its call; halts: whether the talk waits
+    or ends there; says: what it can say, by how the player's line landed; way: where it leads whatever holds; pool:
+    what it draws from; laid: its own choices, then the standing ones. table: all that lies on it where that is the same
+    in every talk; whoever lays it keeps it here.
     """
 
     __slots__ = (
-        "after", "call", "effects", "end", "id", "laid", "node", "pool", "says", "stimulus", "table", "waits", "way",
-        "ways",
+        "after", "bit", "call", "effects", "end", "halts", "id", "laid", "node", "pool", "says", "stimulus", "table",
+        "timer", "waits", "way", "ways",
     )  # fmt: skip
 
     def __init__(self, node: NodeDef, ready: Prepared) -> None:
         self.node, self.id, self.waits, self.end, self.call = node, node.id, node.waits, node.end, node.call
+        self.bit, self.timer, self.halts = ready.script.bits[node.id], node.timer, node.waits or node.end is not None
         self.after = f"after:{node.id}"
         self.effects = _effects(node.effects)
         self.stimulus = Stimulus(node.feel, node.id) if node.feel else None
@@ -228,7 +236,7 @@ class ReadyNode:
         self.pool = ready.pool(node)
         laid = [ready.choice(choice) for choice in (*node.choices, *(ready.script.standing if node.standing else ()))]
         self.laid = tuple([choice for choice in laid if not choice.hidden])
-        self.table: tuple[tuple[Pair, ...], tuple[Choice, ...]] | None = None
+        self.table: tuple[Laid, tuple[Choice, ...]] | None = None
 
     @property
     def always(self) -> bool:

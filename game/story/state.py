@@ -1,20 +1,24 @@
-"""Where a talk stands, as plain data: what a save holds, and what an edited script can still make sense of."""
+"""The beginning of a talk, what is kept of it, and its state as plain data: what a save holds, and what an edited
+script can still make sense of."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from game.core.errors import BadInput, Where
 from game.story.model import Script
+from game.story.prepared import prepared
+from game.story.standing import Log, StoryState, Talk
 from game.story.vocabulary import OUTCOMES, Value
 
-__all__ = ["Memory", "Past", "StoryState", "afternoon_of", "begin", "memory_of", "restore", "save"]
+__all__ = ["Memory", "afternoon_of", "begin", "memory_of", "restore", "save"]
 
 SAVE_VERSION = 1
 _MAX_ENTRIES = 20_000
 _MAX_INT = 1 << 53
+_NOTHING: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -36,97 +40,6 @@ class Memory:
         return Memory(reader.whole("visits"), frozenset(reader.texts("seen")), reader.values("variables"))
 
 
-@dataclass(frozen=True)
-class StoryState:
-    """One talk. ``counter`` is the position in the stream of chance ``seed``; ``turn`` counts the waits.
-
-    offered: (choice id, id of the text it is shown with). returns: nodes to come back to, innermost last;
-    ``after:NODE`` means the way on from NODE. heard: how often lines that may come again were said.
-    """
-
-    stall: str
-    item: str
-    seed: int
-    visit: int = 1
-    counter: int = 0
-    turn: int = 0
-    node: str = ""
-    started: bool = False
-    ended: str | None = None
-    returns: tuple[str, ...] = ()
-    visits: Mapping[str, int] = field(default_factory=dict)
-    said: frozenset[str] = field(default_factory=frozenset)
-    chosen: frozenset[str] = field(default_factory=frozenset)
-    heard: Mapping[str, int] = field(default_factory=dict)
-    earlier: frozenset[str] = frozenset()
-    variables: Mapping[str, Value] = field(default_factory=dict)
-    offered: tuple[tuple[str, str], ...] = ()
-    last_lines: tuple[str, ...] = ()
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> frozenset[str]:
-            # What a step said and chose are bits; as ids they are made when somebody asks.
-            past = self.__dict__.get("past")
-            if past is None or name not in ("said", "chosen"):
-                raise AttributeError(name)
-            found = self.__dict__[name] = past.ids(name)
-            return found
-
-    @staticmethod
-    def stepped(known: dict[str, Any]) -> StoryState:
-        """A state of these very fields, ``past`` in place of ``said`` and ``chosen``: every step of every talk makes
-        one."""
-        fresh = object.__new__(StoryState)
-        object.__setattr__(fresh, "__dict__", known)
-        return fresh
-
-    def __reduce__(self) -> tuple[type[StoryState], tuple[Any, ...]]:
-        return StoryState, tuple(getattr(self, each.name) for each in fields(self))
-
-
-Strange = tuple[frozenset[str], frozenset[str]]
-
-
-class Past(NamedTuple):
-    """What was said, chosen and seen on earlier visits as bits of one script (``Script.bits``), for its next step.
-
-    seen: ids of all that and of the nodes passed; strange: what was said and chosen that the script does not know (any
-    more).
-    """
-
-    script: Script
-    said: int
-    chosen: int
-    earlier: int
-    seen: Collection[str]
-    strange: Strange
-
-    @staticmethod
-    def of(script: Script, state: StoryState) -> Past:
-        """That of a state: as the step that made it left it, or worked out from its ids."""
-        past: Past | None = state.__dict__.get("past")
-        if past is not None and past.script is script:
-            return past
-        bits = script.bits
-        said, chosen, earlier = [
-            sum([bits.get(name, 0) for name in ids]) for ids in (state.said, state.chosen, state.earlier)
-        ]
-        strange = [frozenset([name for name in ids if name not in bits]) for ids in (state.said, state.chosen)]
-        seen = state.earlier | state.said | state.chosen | state.visits.keys()
-        return Past(script, said, chosen, earlier, seen, (strange[0], strange[1]))
-
-    def ids(self, name: str) -> frozenset[str]:
-        """Those ``said`` or ``chosen``."""
-        left, strange = (self.said, self.strange[0]) if name == "said" else (self.chosen, self.strange[1])
-        names, found = self.script.ids, set(strange)
-        while left:
-            low = left & -left
-            found.add(names[low.bit_length() - 1])
-            left ^= low
-        return frozenset(found)
-
-
 def begin(
     script: Script,
     item: str,
@@ -141,21 +54,15 @@ def begin(
     """
     if item not in script.items:
         raise BadInput("item", expected=" | ".join(script.items), seen=item)
-    memory = memory or Memory()
-    kept = {**memory.variables, **(afternoon or {})}
-    return StoryState(
-        stall=script.stall,
-        item=item,
-        seed=seed & (_MAX_INT - 1),
-        visit=memory.visits + 1,
-        earlier=memory.seen,
-        variables=_variables(script, kept, scopes=("stall", "afternoon")),
-    )
+    visits, seen, kept = (0, _NOTHING, {}) if memory is None else (memory.visits, memory.seen, memory.variables)
+    variables = _variables(script, {**kept, **(afternoon or {})}, scopes=("stall", "afternoon"))
+    talk = Talk(prepared(script, item), seed & (_MAX_INT - 1), visits + 1, seen, _bits(script, seen))
+    return StoryState(talk, "", False, None, 0, 0, (), 0, 0, 0, variables, (), Log(talk, None))
 
 
 def memory_of(script: Script, state: StoryState) -> Memory:
     """What the stall keeps of this talk and those before it."""
-    seen = state.earlier | state.said | state.chosen | frozenset(state.visits)
+    seen = state.earlier | state.said | state.chosen | state.visits.keys()
     kept = {name: state.variables[name] for name, v in script.variables.items() if v.scope == "stall"}
     return Memory(state.visit, seen, kept)
 
@@ -211,42 +118,54 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
         raise reader.error("ended", "null or the name of an ending")
     node = reader.text("node")
     known = {*script.nodes, *(f"after:{name}" for name in script.nodes)}
-    state = StoryState(
-        stall=script.stall,
-        item=item,
+    said, chosen, earlier = [frozenset(reader.texts(key)) for key in ("said", "chosen", "earlier")]
+    visits = reader.counts("visits")
+    talk = Talk(
+        prepared(script, item),
         seed=reader.whole("seed"),
         visit=reader.whole("visit"),
-        counter=reader.whole("counter"),
-        turn=reader.whole("turn"),
+        earlier=earlier,
+        earlier_bits=_bits(script, earlier),
+        unknown_said=said - script.bits.keys(),
+        unknown_chosen=chosen - script.bits.keys(),
+    )
+    state = StoryState(
+        talk,
         node=node,
         started=started,
         ended=ended,
+        counter=reader.whole("counter"),
+        turn=reader.whole("turn"),
         returns=tuple(name for name in reader.texts("returns") if name in known)[-16:],
-        visits=reader.counts("visits"),
-        said=frozenset(reader.texts("said")),
-        chosen=frozenset(reader.texts("chosen")),
-        heard=reader.counts("heard") if "heard" in data else {},
-        earlier=frozenset(reader.texts("earlier")),
+        said_bits=_bits(script, said),
+        chosen_bits=_bits(script, chosen),
+        passed_bits=_bits(script, visits),
         variables=_variables(script, reader.values("variables")),
-        offered=reader.pairs("offered"),
-        last_lines=tuple(name for name in reader.texts("last_lines") if name in script.lines),
+        laid=(),
+        log=Log.of(
+            talk,
+            visits,
+            reader.counts("heard") if "heard" in data else {},
+            [script.lines[name] for name in reader.texts("last_lines") if name in script.lines],
+        ),
     )
-    return _fitted(script, state)
+    return _fitted(script, state, reader.pairs("offered"))
 
 
-def _fitted(script: Script, state: StoryState) -> StoryState:
-    """The state with its place and choices as the script knows them now."""
+def _fitted(script: Script, state: StoryState, offered: Iterable[tuple[str, str]]) -> StoryState:
+    """The state with its place and choices as the script knows them now. offered: choices and their wordings."""
     if not state.started or state.ended is not None:
-        return replace(state, offered=())
+        return state
     if state.node not in script.nodes or not script.nodes[state.node].waits:
-        return replace(state, node=script.home, offered=())
+        return state._replace(node=script.home)
     here = {choice.id: choice for choice in script.choices_at(script.nodes[state.node])}
-    offered = tuple(
-        (choice, text if any(line.id == text for line in here[choice].texts) else here[choice].texts[0].id)
-        for choice, text in state.offered
-        if choice in here
-    )
-    return replace(state, offered=offered)
+    ready = state.talk.ready
+    return state._replace(laid=tuple([ready.laid(here[choice], text) for choice, text in offered if choice in here]))
+
+
+def _bits(script: Script, ids: Iterable[str]) -> int:
+    """Those of different ids, as far as the script knows them."""
+    return sum([script.bits.get(name, 0) for name in ids])
 
 
 def _variables(

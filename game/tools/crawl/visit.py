@@ -90,7 +90,7 @@ def beats_of(assets: StepAssets, node: str) -> list[TalkState]:
     begun = start_talk(assets.talk, item, 0, purse=9000)
     for seed in range(SEEDS):
         try:
-            talk = warp_talk(assets.talk, replace(begun, story=replace(begun.story, seed=seed)), node)
+            talk = warp_talk(assets.talk, replace(begun, story=begun.story.with_seed(seed)), node)
         except BadInput:
             break
         new = {choice.id for choice in talk.beat.choices} | {line.id for line in talk.beat.lines}
@@ -119,9 +119,9 @@ def _hidden(assets: StepAssets, base: TalkState, node: str, states: list[TalkSta
     hidden = [choice for choice in wordings if (choice.id, choice.en) not in offered]
     standing = tuple(choice for choice in base.beat.choices if choice.act in STANDING_ACTS)
     if lines:
-        yield replace(base.beat, node=node, lines=tuple(lines))
+        yield base.beat._replace(node=node, lines=tuple(lines))
     for at in range(0, len(hidden), MOST_OFFERED):
-        yield replace(base.beat, node=node, lines=(), choices=(*hidden[at : at + MOST_OFFERED], *standing))
+        yield base.beat._replace(node=node, lines=(), choices=(*hidden[at : at + MOST_OFFERED], *standing))
 
 
 def _pictures(session: Session, nodes: dict[str, list[TalkState]]) -> Iterator[tuple[str, Screen, World]]:
@@ -136,7 +136,7 @@ def _pictures(session: Session, nodes: dict[str, list[TalkState]]) -> Iterator[t
                 if key in said:
                     continue
                 said.add(key)
-                shown = replace(talk, beat=replace(talk.beat, choices=choices))
+                shown = replace(talk, beat=talk.beat._replace(choices=choices))
                 world = enter_talk(session.assets, session.world, shown)
                 screen = TalkScreen()
                 world = replace(world, queue=(), backlog=lines)

@@ -1,0 +1,73 @@
+"""The way from one place where a talk can take a turn to the next, as stretches: what happens there in any case, and
+what is still to be asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from game.story.beat import Spoken, Stimulus
+from game.story.ready import ReadyEffect, ReadyNode, ReadySay
+
+__all__ = ["Passage", "Stretch", "passage_from"]
+
+
+class Stretch(NamedTuple):
+    """Part of a passage. First what happens in any case: the nodes passed, whose bits are ``passed``, and the lines
+    said, whose bits are ``said``; then the effects, then the groups of lines of which one each may be said."""
+
+    nodes: tuple[str, ...] = ()
+    passed: int = 0
+    lines: tuple[Spoken, ...] = ()
+    said: int = 0
+    stimuli: tuple[Stimulus, ...] = ()
+    effects: tuple[ReadyEffect, ...] = ()
+    says: tuple[ReadySay, ...] = ()
+
+    def after(self, node: ReadyNode) -> Stretch:
+        """The same with a node passed as well, which nothing has been asked before."""
+        stimuli = self.stimuli if node.stimulus is None else (*self.stimuli, node.stimulus)
+        return self._replace(
+            nodes=(*self.nodes, node.id), passed=self.passed | node.bit, stimuli=stimuli, effects=node.effects
+        )
+
+    def saying(self, say: ReadySay) -> Stretch:
+        """The same with a group of lines as well."""
+        test, group = say
+        line = None if test is not None or self.effects or self.says else group.only
+        if line is None or line.always is None:
+            return self._replace(says=(*self.says, say))
+        stimuli = self.stimuli if line.stimulus is None else (*self.stimuli, line.stimulus)
+        return self._replace(lines=(*self.lines, line.always), said=self.said | line.bit, stimuli=stimuli)
+
+
+class Passage(NamedTuple):
+    """Nodes that follow one another whatever holds. last: the one where the talk waits, ends or takes a turn; where
+    it waits or ends there, it is the only one, since the market's answer may come before it."""
+
+    stretches: tuple[Stretch, ...]
+    last: ReadyNode
+
+
+def passage_from(
+    first: ReadyNode, nodes: Callable[[str], ReadyNode | None], says: Callable[[ReadyNode], Sequence[ReadySay]]
+) -> Passage:
+    """The passage that begins with a node.
+
+    nodes: by the name of a way, the node; None where it depends on the talk which it is. says: what a node can say.
+    """
+    stretches = [Stretch()]
+    passed: dict[str, ReadyNode] = {}
+    following: ReadyNode | None = first
+    while following is not None:
+        node = passed[following.id] = following
+        if stretches[-1].effects or stretches[-1].says:
+            stretches.append(Stretch())
+        stretches[-1] = stretches[-1].after(node)
+        for say in says(node):
+            stretches[-1] = stretches[-1].saying(say)
+        goes_on = not node.halts and node.call is None and node.way
+        following = nodes(node.way) if goes_on else None
+        if following is not None and (following.halts or following.id in passed):
+            following = None
+    return Passage(tuple(stretches), node)
