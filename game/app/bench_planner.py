@@ -83,9 +83,9 @@ def _measure(planner: Planner, n: int, seed: int, how: str) -> list[Row]:
         times.append(time.perf_counter_ns() - begin)
     settled = np.array(times[len(times) // 10 :]) / n / 1000.0
     everyone, now = np.arange(n), ticks * _TICK_S
-    pieces = [everyone[i : i + 64] for i in range(0, n, 64)]
+    signal = PlannerSignal(emotion, words, now)
     repeats = int(np.clip(20_000 // n, 5, 500))
-    judged = _times(lambda: [planner.evaluate(state, p, words[p], now) for p in pieces], repeats) / n
+    judged = _times(lambda: planner.judge(state, everyone, signal, spend=True), repeats) / n
     floor = float(np.median(_times(_floor(rng, n), repeats))) / n
     who = "1 character" if n == 1 else f"{n} characters"
     wanted = "<= 18 µs" if n == 1 else "<= 0.8 µs"

@@ -128,9 +128,9 @@ class _Bodies:
         self.actors = [_Actor(i) for i in range(n)]
         self.talks = list(self.actors)
         keys = [character_keys((seed * 1_000_003 + first + i) & 0x7FFFFFFF, 0, 1) for i in range(n)]
-        self.state: PlannerState = self.planner.start(n, seed).renewed(key=np.concatenate(keys))
+        self.state: PlannerState = self.planner.start_keyed(np.concatenate(keys))
         self.habit = habit_of(self.planner, person.habit_units, person.habit_rate)
-        self.state = greet(self.state, self.habit, 0.0).copied()
+        self.state = greet(self.state, self.habit, 0.0)
         self.ahead = Ahead.start(n, self.planner, person)
         self.tick = np.zeros(n, dtype=np.int64)
         self.due_s = np.full(n, np.inf)

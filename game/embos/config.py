@@ -23,9 +23,10 @@ class PlannerConfig:
     going. spread: scales the takes' spread in the random factors. look_s: seconds between two looks at times and
     emotion, 0: every tick. settled: layers whose units are taken to have run before the first tick, so that not all
     are free at once; eager: 0..1, share of that wait that is left when the emotion leaps. rest: layer -> φ_state of
-    its rest unit. presence: 0..1, see scores.presence.
-    tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds a
-    word's moment stays open. lead_in_s: most seconds a line waits for the preparation of its first gesture. stress:
+    its rest unit. presence: 0..1, by how much φ_state is scaled by the share of what is felt in which a unit was ever
+    seen: at joy ½, anger ½ the difference d alone cannot tell a unit of pure joy (d = ½) from one that neither ever
+    showed. tolerance: change of emotion that makes φ_state be computed anew. radius: r of eq. 5. word_window_s: seconds
+    a word's moment stays open. lead_in_s: most seconds a line waits for the preparation of its first gesture. stress:
     which words beats may fall on.
     """
 

@@ -1,7 +1,8 @@
 """Random numbers that depend on nothing but (seed, character, layer, how often that layer started, purpose).
 
 A counter-based generator (splitmix64's finalizer as a hash, Steele, Lea, Flood 2014) has no state to share, so a
-character's draws are the same alone and in a crowd, in any order, and after loading a save.
+character's draws are the same alone and in a crowd, in any order, and after loading a save. What a unit draws when it
+starts is drawn by the compiled loops, in the same way: ``plan/draws.c``.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from math import erf, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["character_keys", "factor", "uniform"]
+__all__ = ["NORMAL", "SHARE", "character_keys", "uniform"]
 
 Words = NDArray[np.uint64]
 Floats = NDArray[np.float64]
@@ -19,12 +20,12 @@ Floats = NDArray[np.float64]
 _GOLDEN = 0x9E3779B97F4A7C15
 _FARTHEST = 3.0
 """Standard deviations at which a normal draw is cut: no posture lasts ten times its length."""
-# The normal distribution's quantiles between the cuts as a table: exact to 1e-5, and the game starts a third of a
-# second sooner than with scipy.special.
-_NORMAL = np.linspace(-_FARTHEST, _FARTHEST, 1201)
-_SHARE = np.array([0.5 + 0.5 * erf(x / sqrt(2.0)) for x in _NORMAL])
-_NORMAL.setflags(write=False)
-_SHARE.setflags(write=False)
+NORMAL = np.linspace(-_FARTHEST, _FARTHEST, 1201)
+"""The normal distribution's quantiles between the cuts as a table, exact to 1e-5 …"""
+SHARE = np.array([0.5 + 0.5 * erf(x / sqrt(2.0)) for x in NORMAL])
+"""… and what lies below each."""
+NORMAL.setflags(write=False)
+SHARE.setflags(write=False)
 
 
 def _mix(x: Words) -> Words:
@@ -46,12 +47,3 @@ def uniform(keys: Words, layer: NDArray[np.intp], started: NDArray[np.int64], co
     counter = event[:, None] + np.arange(1, count + 1, dtype=np.uint64)
     bits = _mix(_mix(keys[:, None] ^ (counter * np.uint64(_GOLDEN))))
     return ((bits >> np.uint64(11)).astype(np.float64) + 0.5) * 2.0**-53
-
-
-def factor(uniform01: Floats, sigma: Floats) -> Floats:
-    """Log-normal factors with mean 1; sigma of the logarithm, 0: exactly 1. Arguments broadcast.
-
-    A coefficient of variation c has sigma = √log(1 + c²).
-    """
-    normal = np.interp(uniform01, _SHARE, _NORMAL)
-    return np.asarray(np.exp(sigma * normal - 0.5 * sigma * sigma))

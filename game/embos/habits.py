@@ -50,9 +50,9 @@ def greet(state: PlannerState, habit: Habit | None, time_s: float) -> PlannerSta
     who, which = np.indices((len(state), len(habit.slots))).reshape(2, -1)
     chance = uniform(state.key[who], habit.slots[which], np.full(len(who), _EVENT, dtype=np.int64), 1)
     due_s = time_s + GREETING_S[0] + (GREETING_S[1] - GREETING_S[0]) * chance.reshape(len(state), -1)
-    wait_s, untried = state.wait_s.copy(), state.untried.copy()
+    met = state.copied()
+    fields = met.characters.fields
     # From now on that wait is settled: what is drawn at the start or after a leap does not touch it.
-    wait_s[:, habit.slots], untried[:, habit.slots] = due_s, False
-    next_s = np.minimum(state.next_s, due_s.min(axis=1))
-    soonest_s = min(state.soonest_s, float(next_s.min()))
-    return state.renewed(wait_s=wait_s, untried=untried, next_s=next_s, soonest_s=soonest_s)
+    fields["wait_s"][:, habit.slots], fields["untried"][:, habit.slots] = due_s, False
+    fields["next_s"] = np.minimum(fields["next_s"], due_s.min(axis=1))
+    return PlannerState(met.characters, min(state.soonest_s, float(fields["next_s"].min())), state.starting)

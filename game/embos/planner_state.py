@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TICK_S", "Decisions", "Factors", "Habit", "PlannerSignal", "PlannerState"]
+from game.core.compiled import Block, Machine
+
+__all__ = ["TICK_S", "CharacterKind", "Characters", "Decisions", "Factors", "Habit", "PlannerSignal", "PlannerState"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -79,85 +82,160 @@ class Decisions:
 
 
 @dataclass(frozen=True, eq=False)
+class CharacterKind:
+    """Where the records of one planner's characters are kept, and how they are laid out.
+
+    record: struct Character of plan.h and what follows it, field by field as PlannerState names them.
+    """
+
+    machine: Machine
+    record: np.dtype[Any]
+    gestures: int
+
+    @classmethod
+    def of(cls, machine: Machine, slots: int, gestures: int) -> CharacterKind:
+        """For P slots and G gestures."""
+        record = [
+            ("key", "<u8"), ("next_s", "<f8"), ("emotion", "<f8", 7), ("settled", "<f8", 7),
+            ("running", "<i8", 3), ("starts", "<i8", 3), ("unit", "<i8", 3),
+            ("marks_s", "<f8", (3, 2)), ("numbers", "<f8", (3, 11)),
+            ("started", "?", 3), ("calm", "?"), ("unused", "u1", 4),
+            ("wait_s", "<f8", slots), ("phi_state", "<f8", slots), ("words", "<f8", gestures),
+            ("order", "<i2", slots), ("untried", "?", slots), ("room", "u1", -3 * slots % 8),
+        ]  # fmt: skip
+        return cls(machine, np.dtype(record), gestures)
+
+    def room(self, count: int) -> Characters:
+        """Room for so many, not cleared."""
+        return Characters(self, self.machine.block((count, self.record.itemsize // 8), np.float64))
+
+
+@dataclass(frozen=True, eq=False)
+class Characters:
+    """The records of n characters."""
+
+    kind: CharacterKind
+    block: Block
+
+    @cached_property
+    def fields(self) -> NDArray[Any]:
+        """(n,) by field name, to be written to."""
+        return np.asarray(self.block.data.view(self.kind.record)[:, 0])
+
+    @cached_property
+    def seen(self) -> NDArray[Any]:
+        """The same, read-only."""
+        seen = self.fields[:]
+        seen.setflags(write=False)
+        return seen
+
+    @cached_property
+    def decisions(self) -> Decisions:
+        return Decisions(self.seen["unit"], self.seen["started"], self.seen["numbers"])
+
+    @cached_property
+    def last(self) -> tuple[Floats, Floats]:
+        """(n, 7) emotion that eq. 1 last saw, and (n, G) words of the last tick."""
+        return self.seen["emotion"], self.seen["words"]
+
+
+@dataclass(frozen=True, eq=False)
 class PlannerState:
     """Where n characters stand; never changed in place (but for who spends it), so that it can be kept or compared.
 
-    key: (n,) uint64 of each character's draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running
-    unit's duration, and until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf
-    if it never ran; untried: (n, P) bool, True where that wait was drawn rather than earned. starts: (n, L) how
-    often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P) as last computed; settled: (n, 7) the
-    emotion that waits were last drawn for. words: (n, G) of the last tick. next_s: (n,) when the decision may
-    change by time alone, soonest_s the least of them; calm: (n,) bool, no end of a word can change it. decisions:
-    the last tick's.
+    soonest_s: the least of next_s; starting: whether anybody has started anything in the last tick. By character:
+    key: (n,) uint64 of its draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running unit's duration, and
+    until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf if it never ran; untried:
+    (n, P) bool, True where that wait was drawn rather than earned. starts: (n, L) how often the layer has started a
+    unit. emotion: (n, 7) and phi_state: (n, P) as last computed. words: (n, G) of the last tick. next_s: (n,) when the
+    decision may change by time alone; calm: (n,) bool, no end of a word can change it. decisions: the last tick's.
     """
 
-    key: NDArray[np.uint64]
-    running: Ints
-    marks_s: Floats
-    wait_s: Floats
-    untried: Bools
-    starts: NDArray[np.int64]
-    emotion: Floats
-    settled: Floats
-    phi_state: Floats
-    words: Floats
-    next_s: Floats
-    calm: Bools
+    characters: Characters
     soonest_s: float
-    decisions: Decisions
+    starting: bool
 
     def __len__(self) -> int:
-        return len(self.key)
+        return len(self.characters.block.data)
 
-    def renewed(self, **changes: Any) -> PlannerState:
-        """A state with some fields replaced (dataclasses.replace, without its overhead)."""
-        return PlannerState(**{**vars(self), **changes})
+    @property
+    def decisions(self) -> Decisions:
+        return self.characters.decisions
 
-    def fresh(self) -> Bools:
-        """(n,) bool: before the first tick."""
-        return np.asarray((self.starts == 0).all(axis=1))
+    @property
+    def key(self) -> NDArray[np.uint64]:
+        return np.asarray(self.characters.seen["key"])
+
+    @property
+    def running(self) -> Ints:
+        return np.asarray(self.characters.seen["running"])
+
+    @property
+    def marks_s(self) -> Floats:
+        return np.asarray(self.characters.seen["marks_s"])
+
+    @property
+    def wait_s(self) -> Floats:
+        return np.asarray(self.characters.seen["wait_s"])
+
+    @property
+    def untried(self) -> Bools:
+        return np.asarray(self.characters.seen["untried"])
+
+    @property
+    def starts(self) -> Ints:
+        return np.asarray(self.characters.seen["starts"])
+
+    @property
+    def emotion(self) -> Floats:
+        return self.characters.last[0]
+
+    @property
+    def phi_state(self) -> Floats:
+        return np.asarray(self.characters.seen["phi_state"])
+
+    @property
+    def words(self) -> Floats:
+        return self.characters.last[1]
+
+    @property
+    def next_s(self) -> Floats:
+        return np.asarray(self.characters.seen["next_s"])
+
+    @property
+    def calm(self) -> Bools:
+        return np.asarray(self.characters.seen["calm"])
+
+    def standing(self, *, spend: bool) -> PlannerState:
+        """The tick in which nothing starts."""
+        if not self.starting:
+            return self
+        state = self if spend else self.copied()
+        state.characters.fields["started"] = False
+        return PlannerState(state.characters, self.soonest_s, False)
 
     def copied(self) -> PlannerState:
-        """The same in arrays of its own."""
-        own = {name: value.copy() for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        decisions = Decisions(*(value.copy() for value in vars(self.decisions).values()))
-        return PlannerState(**own, soonest_s=self.soonest_s, decisions=decisions)
-
-    def standing(self) -> PlannerState:
-        """The tick in which nothing starts."""
-        old = self.decisions
-        return self.renewed(decisions=Decisions(old.unit, np.zeros_like(old.started), old.numbers))
+        """The same in records of its own."""
+        characters = self.characters.kind.room(len(self))
+        characters.block.data[...] = self.characters.block.data
+        return PlannerState(characters, self.soonest_s, self.starting)
 
     def of(self, rows: Ints) -> PlannerState:
         """Some of the characters, in the order of ``rows``; each goes on as it would have among all."""
-        kept = {name: value[rows] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        decisions = Decisions(**{name: value[rows] for name, value in vars(self.decisions).items()})
-        return PlannerState(**kept, soonest_s=float(kept["next_s"].min(initial=np.inf)), decisions=decisions)
+        few = self.characters.kind.room(len(rows))
+        few.block.data[...] = self.characters.block.data[rows]
+        return PlannerState(few, float(few.seen["next_s"].min(initial=np.inf)), bool(few.seen["started"].any()))
 
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Eq. 1 for R characters. continuity, time, state, score: (R, L, M); linkage: per layer (R, M), or None where
-    no layer is above. chosen: (R, L) slots. within: (R, L) the running unit is inside its duration. started: (R, L)
-    another unit won, or the running one after its waiting time. next_s: (R,) when the decision may change by time
-    alone; calm: (R,) whether no end of a word can change it."""
+    """Eq. 1 for R characters. continuity, linkage, time, state and their product, score: (R, L, M). chosen: (R, L)
+    slots. within: (R, L) the running unit is inside its duration."""
 
     continuity: Floats
+    linkage: Floats
     time: Floats
     state: Floats
-    linkage: list[Floats | None]
     score: Floats
     chosen: Ints
     within: Bools
-    started: Bools
-    next_s: Floats
-    calm: Bools
-
-    def of(self, row: int) -> Factors:
-        """The factors of one of the R characters."""
-        if len(self.chosen) == 1:
-            return self
-        one = slice(row, row + 1)
-        linkage = [None if link is None else link[one] for link in self.linkage]
-        arrays = {name: value[one] for name, value in vars(self).items() if name != "linkage"}
-        return Factors(linkage=linkage, **arrays)

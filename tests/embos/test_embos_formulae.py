@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from game.core import EMOTIONS, with_neutral
-from game.embos import mixing, scores, statistics
+from game.embos import MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary, mixing, scores, statistics
+from tests.embos import plain_scores
 
 VECTORS: dict[str, Any] = json.loads(
     Path(os.environ.get("MCG_CONFORMANCE") or Path(__file__).parents[1] / "data" / "formulae.json").read_text("utf-8")
@@ -65,14 +66,24 @@ def test_mixing_eq5(case: dict[str, Any]) -> None:
 def test_phi_time(case: dict[str, Any]) -> None:
     started = -np.inf if case["started"] is None else case["started"]
     minimum = case.get("minimum", 0.02)
-    phi = scores.phi_time(case["t"], started, case["L_d"], case["L_w"], minimum=minimum)
+    phi = plain_scores.phi_time(case["t"], started, case["L_d"], case["L_w"], minimum=minimum)
     np.testing.assert_allclose(phi, case["phi"], rtol=1e-9)
+
+
+def planned_phi_state(character: np.ndarray, intensity: np.ndarray) -> np.ndarray:
+    """φ_state as the planner works it out, wherever a unit was seen."""
+    shown = np.ones(7)
+    units = [MotionUnit(f"p{i}", "posture", row, shown, shown) for i, row in enumerate(intensity)]
+    planner = Planner(UnitLibrary(units), PlannerConfig(presence=0.0))
+    state, _ = planner.advance(planner.start(1, 1), PlannerSignal(np.array([character]), np.zeros((1, 0)), 0.0))
+    return state.phi_state[0, : len(units)]
 
 
 @pytest.mark.parametrize("case", cases("phi_state"))
 def test_phi_state(case: dict[str, Any]) -> None:
-    phi = scores.phi_state(np.array(case["character"]), np.array(case["units"], dtype=np.float64))
-    np.testing.assert_allclose(phi, case["phi"], rtol=1e-9, atol=1e-12)
+    units = np.array(case["units"], dtype=np.float64)
+    np.testing.assert_allclose(planned_phi_state(case["character"], units), case["phi"], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(plain_scores.phi_state(case["character"], units), case["phi"], rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("case", cases("linkage"))
@@ -89,14 +100,11 @@ UNITS = hnp.arrays(np.float64, (5, 7), elements=st.floats(0, 1, allow_subnormal=
 @settings(max_examples=60, deadline=None)
 def test_phi_state_stays_in_its_range_and_prefers_the_nearest(six: np.ndarray, units: np.ndarray) -> None:
     character = with_neutral(six)
-    phi = scores.phi_state(character, units)
-    d = scores.difference(character, units)
+    phi = planned_phi_state(character, units)
+    d = [plain_scores.difference(character, unit) for unit in units]
     assert phi.min() >= 0.0
     assert phi.max() <= 1.0
     assert phi.max() == pytest.approx(phi[np.argmin(d)])
-    share = scores.presence(character, units > 0)
-    assert share.min() >= 0.0
-    assert share.max() <= 1.0 + 1e-12
 
 
 @given(SIX, SIX, st.lists(st.booleans(), min_size=7, max_size=7))

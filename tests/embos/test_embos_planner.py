@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from game.core import BadInput, with_neutral
-from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, UnitLibrary, scores
+from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, PlannerState, UnitLibrary
+from tests.embos import plain_scores
 
 DT = 1.0 / 30.0
 JOY = np.eye(7)[2:3]
@@ -76,7 +76,9 @@ def test_waiting_for_events_gives_what_judging_every_tick_gives(made_up: Callabl
     planner = Planner(library)
     lazy = eager = planner.start(6, 2)
     for signal in wander(6, library, 400):
-        eager = replace(eager, next_s=np.full(6, -np.inf), soonest_s=-np.inf, calm=np.zeros(6, dtype=bool))
+        eager = eager.copied()
+        eager.characters.fields["next_s"], eager.characters.fields["calm"] = -np.inf, False
+        eager = PlannerState(eager.characters, -np.inf, eager.starting)
         lazy, a = planner.advance(lazy, signal)
         eager, b = planner.advance(eager, signal)
         for name in DECIDED:
@@ -111,7 +113,7 @@ def test_clocks_of_their_own_and_a_spent_state_change_nothing(made_up: Callable[
             )
             before = state
             state = planner.judge(state, np.array(due), own, DT, spend=True)
-            assert state.wait_s is before.wait_s
+            assert state.characters is before.characters
         for i in rows[at >= 0]:
             wanted, seen = together[at[i]], state.decisions
             np.testing.assert_array_equal(seen.unit[i], wanted.unit[i])
@@ -126,15 +128,17 @@ def test_a_state_is_never_changed_and_can_be_resumed(made_up: Callable[..., Any]
     state = planner.start(3, 5)
     for signal in signals[:60]:
         state, _ = planner.advance(state, signal)
-    before = {f.name: np.array(getattr(state, f.name)) for f in fields(state) if f.name != "decisions"}
+    before, decided = state.characters.seen.copy(), state.decisions.numbers.copy()
     ends = []
     for _ in range(2):
         onward = state
         for signal in signals[60:]:
             onward, decisions = planner.advance(onward, signal)
         ends.append(decisions)
-    for name, value in before.items():
-        np.testing.assert_array_equal(getattr(state, name), value)
+    np.testing.assert_array_equal(state.characters.seen, before)
+    np.testing.assert_array_equal(state.decisions.numbers, decided)
+    with pytest.raises(ValueError, match="read-only"):
+        state.wait_s[0] = 0.0
     np.testing.assert_array_equal(ends[0].start_time_s, ends[1].start_time_s)
 
 
@@ -312,16 +316,25 @@ def test_a_signal_of_the_wrong_shape_is_refused() -> None:
         planner.advance(planner.start(2, 1), PlannerSignal(JOY, np.zeros((1, 1)), 0.0))
 
 
+def test_a_state_of_another_planner_is_refused() -> None:
+    with pytest.raises(BadInput, match="that this planner started"):
+        small().advance(small().start(1, 1), PlannerSignal(JOY, np.zeros((1, 1)), 0.0))
+
+
 def test_the_planners_phi_state_is_the_formula_layer_by_layer(made_up: Callable[..., Any]) -> None:
     library = made_up(7).library
     planner, rng = Planner(library), np.random.default_rng(2)
     emotion = np.concatenate([with_neutral(rng.random((60, 6)) ** 2), with_neutral(np.eye(6)), np.eye(7)[6:]])
-    fast = planner.tables.phi_state(emotion)
+    n, words = len(emotion), np.zeros((len(emotion), len(library.gestures)))
+    state, _ = planner.advance(planner.start(n, 1), PlannerSignal(emotion[::-1], words, 0.0))
+    state, _ = planner.advance(state, PlannerSignal(emotion, words, DT))  # ranked before, in another order
     for layer in LAYERS:
         own = [i for i in library.of_layer(layer) if not library.is_rest[i]]
-        wanted = scores.phi_state(emotion, library.intensity[own]) * scores.presence(emotion, library.exists[own])
         slots = [planner.tables.slot_of(i) for i in own]
-        np.testing.assert_allclose(fast[:, slots], wanted, rtol=1e-9, atol=1e-12)
+        for felt, found in zip(emotion, state.phi_state[:, slots], strict=True):
+            seen = [plain_scores.presence(felt, shown) for shown in library.exists[own]]
+            wanted = np.array(plain_scores.phi_state(felt, library.intensity[own])) * seen
+            np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-12)
 
 
 def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> None:
@@ -330,14 +343,14 @@ def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> No
     state, words = planner.start(7, 3), np.ones((7, len(library.gestures)))
     rows, started = np.arange(7), np.full((7, planner.tables.slots), -np.inf)
     lengths, waits = np.zeros_like(started), np.zeros_like(started)
+    phi_time = np.vectorize(plain_scores.phi_time)
     for tick in range(600):
         signal = PlannerSignal(np.eye(7), words, tick * DT)
         now = planner.moment(signal.time_s, DT)
-        prepared = planner.prepared(state, signal, rows)
-        time = planner.evaluate(prepared, rows, words, now).time.reshape(7, -1)
-        used = planner.tables.unit >= 0
-        wanted = scores.phi_time(now, started, lengths, waits)
-        np.testing.assert_array_equal(time[:, used], wanted[:, used])
+        if tick % 20 == 0 or state.starting:
+            time = planner.weigh(state, signal, rows)[2].time.reshape(7, -1)
+            used = planner.tables.unit >= 0
+            np.testing.assert_array_equal(time[:, used], phi_time(now, started, lengths, waits)[:, used])
         before = state
         state, d = planner.advance(state, signal)
         # Whoever had to give way has had its duration.
@@ -349,3 +362,13 @@ def test_the_planners_phi_time_is_the_formula(made_up: Callable[..., Any]) -> No
         slot = state.running[who, layer]
         started[who, slot], lengths[who, slot] = signal.time_s, d.duration_s[who, layer]
         waits[who, slot] = state.wait_s[who, slot] - signal.time_s - d.duration_s[who, layer]
+
+
+def test_what_starts_is_mixed_by_eq_5(made_up: Callable[..., Any]) -> None:
+    library = made_up(9).library
+    planner, rng = Planner(library), np.random.default_rng(3)
+    emotion = with_neutral(rng.random((40, 6)) ** 2)
+    _, d = planner.advance(planner.start(40, 1), PlannerSignal(emotion, np.ones((40, len(library.gestures))), 0.0))
+    mixed = library.mix_weights(emotion[:, None], d.unit)
+    np.testing.assert_allclose(d.emotion_weights, mixed, rtol=1e-12, atol=1e-300)
+    assert mixed.any(axis=2).mean() > 0.5
