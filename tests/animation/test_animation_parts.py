@@ -1,15 +1,14 @@
-"""The pieces a tick is made of: bilinear quaternions, limbs, collisions, rows, transitions' curves."""
+"""What a tick plays: rows of takes, loops, traces; bilinear quaternions, numbers alone and in company."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from game.animation import bilinear as bl
 from game.animation import channels as ch
-from game.animation import collision, limbs
 from game.animation import rows as rw
+from game.animation.arithmetic import Curve, arithmetic, columns, numbers
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
@@ -29,104 +28,6 @@ def test_bilinear_maps_are_the_quaternion_algebra() -> None:
     half_turns = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], dtype=np.float32)
     back = bl.from_matrix(quat.to_matrix(half_turns))
     np.testing.assert_allclose(np.abs((back * half_turns).sum(-1)), 1.0, atol=1e-6)
-
-
-ARM = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([limbs.ARM]))
-LEG = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([limbs.STRAIGHT]))
-
-
-def solved(elbow_deg: float, target: object, kind: limbs.Limbs = LEG) -> tuple[np.ndarray, np.ndarray]:
-    """A limb along x, bent by elbow_deg, sent to a target -> where its end comes to lie, the two rotations."""
-    angle = np.radians(elbow_deg)
-    joint = np.array([0.216, 0, 0])
-    end = joint + 0.206 * np.array([np.cos(angle), 0, np.sin(angle)])
-    goal = end if target is None else np.asarray(target)
-    points = np.array([np.zeros(3), joint, end, goal], dtype=np.float32).T[:, :, None, None]
-    hinge = limbs.HINGE_WEIGHT_M * np.array([0, 1, 0], dtype=np.float32)[:, None, None]
-    opened, swing = limbs.solve_limbs(kind, points, hinge)
-    fix = bl.product(swing[:, None], opened[:, ::2])[..., 0, 0].T
-    upper, lower = (Rotation.from_quat(q) for q in fix)
-    return upper.apply(joint) + lower.apply(end - joint), fix
-
-
-@pytest.mark.parametrize("elbow", [0.0, 20.0, 90.0, 140.0])
-@pytest.mark.parametrize("target", [(0.2, 0.1, 0.2), (-0.1, 0.25, 0.15), (0.05, -0.3, 0.1), (0.12, 0.0, 0.02)])
-def test_limbs_reach_their_targets(elbow: float, target: tuple[float, float, float]) -> None:
-    np.testing.assert_allclose(solved(elbow, target)[0], target, atol=2e-3)
-
-
-def test_a_limb_that_is_there_stays_as_it_is() -> None:
-    np.testing.assert_allclose(np.abs(solved(70.0, None, ARM)[1][:, 3]), 1.0, atol=1e-6)
-
-
-@pytest.mark.parametrize("share", [limbs.ARM, limbs.STRAIGHT, (0.985, 0.999)])
-def test_a_reach_ends_softly_and_never_runs_ahead_of_what_is_asked(share: tuple[float, float]) -> None:
-    full = 0.422
-    asked = np.linspace(0.9, 1.1, 200)
-    kind = limbs.limbs_of(np.array([0.216]), np.array([0.206]), np.array([share]))
-    got = np.array([np.linalg.norm(solved(40.0, (a * full, 0, 0), kind)[0]) for a in asked]) / full
-    assert got.max() < share[1] + 1e-3
-    assert (np.diff(got) < np.diff(asked) + 4e-4).all()
-
-
-def test_reach_is_clamped_softly() -> None:
-    full = 0.422
-    distances = np.linspace(0.85, 1.3, 60) * full
-    ratio = np.array([np.linalg.norm(solved(40.0, (d, 0, 0), ARM)[0]) for d in distances]) / full
-    np.testing.assert_allclose(ratio[distances < 0.92 * full], (distances / full)[distances < 0.92 * full], atol=3e-3)
-    assert ratio.max() < limbs.ARM[1] + 1e-3
-    assert (np.diff(ratio) > -1e-3).all()
-
-
-def body_maps() -> np.ndarray:
-    rest = REFERENCE.rest_model.astype(np.float32)
-    return collision.body_frames(rest[None, [REFERENCE.index[name] for name in collision.BODY_JOINTS]])
-
-
-def at_points(**where: tuple[float, float, float]) -> np.ndarray:
-    """(1, 14, 4) both hands' points far away but for some: left_1 is the left palm."""
-    points = np.full((1, 2, 7, 4), 5.0, dtype=np.float32)
-    points[..., 3] = 1.0
-    for name, place in where.items():
-        hand, _, point = name.partition("_")
-        points[0, ("left", "right").index(hand), int(point), :3] = place
-    return points.reshape(1, 14, 4)
-
-
-def test_points_inside_the_body_are_pushed_to_its_surface_and_others_left_alone() -> None:
-    maps = body_maps()
-    assert collision.push_out(maps, at_points()) is None
-    palm = np.array([0.0, 0.82, 0.10])  # the left palm 1 cm inside the breast
-    push = collision.push_out(maps, at_points(left_1=tuple(palm)))
-    assert push is not None
-    assert push[0, 0, 2] > 0.02
-    assert abs(push[0, 0, 0]) < 1e-3
-    assert not push[0, 1].any()
-    again = collision.push_out(maps, at_points(left_1=tuple(palm + push[0, 0])))
-    assert again is not None
-    assert np.linalg.norm(again[0, 0]) < 0.25 * np.linalg.norm(push[0, 0])
-
-
-def test_the_gradient_is_that_of_the_distance() -> None:
-    maps = body_maps()
-    rng = np.random.default_rng(3)
-    points = np.ones((1, 40, 4), dtype=np.float32)
-    points[..., :3] = np.array([0, 0.9, 0]) + rng.normal(size=(1, 40, 3)) * 0.2
-    distance, away = collision.body_distance(maps, points)
-    assert distance.shape == (1, 6, 40)
-    np.testing.assert_allclose(np.linalg.norm(away, axis=2), 1.0, atol=1e-4)
-    points[..., :3] += 1e-3 * away[:, 0].swapaxes(-1, -2)
-    moved, _ = collision.body_distance(maps, points)
-    assert (moved[:, 0] > distance[:, 0]).all()
-
-
-def test_hands_on_the_table_are_lifted_and_below_its_edge_drawn_back() -> None:
-    maps = body_maps()
-    push = collision.push_out(maps, at_points(left_0=(0.2, 0.58, 0.4), right_0=(-0.3, 0.50, 0.14)))
-    assert push is not None
-    np.testing.assert_allclose(0.58 + push[0, 0, 1], 0.585 + 0.027 + 0.004, atol=1e-3)
-    assert push[0, 1, 2] < -0.005
-    assert abs(push[0, 1, 1]) < 0.01
 
 
 def test_a_looped_span_has_no_seam() -> None:
@@ -162,3 +63,21 @@ def test_units_without_motion_or_with_unknown_contacts_are_refused(library: Unit
     odd = MotionUnit("odd", "posture", seven, seven, seven, contacts={"left_hand": "moon"}, variants=span)
     with pytest.raises(BadInput, match=r"moon.*|table"):
         bake(UnitLibrary([odd], library.clips), ("posture",))
+
+
+def test_numbers_are_the_same_alone_and_in_company() -> None:
+    crowd = np.random.default_rng(4).normal(size=(5, 3))
+    curve = Curve(np.array([-1.0, 0.0, 0.5]), np.array([2.0, 0.0, 1.0]))
+
+    def formula(some: np.ndarray) -> np.ndarray:
+        do = arithmetic(len(some))
+        a, b, c = numbers(some)
+        found = [do.sin(a) + do.exp(b), do.least(a, do.most(b, c)), do.where(a < b, c, do.hypot(a, b)), 7.0]
+        return columns([*found, do.curve(curve, c), do.arctan2(a, b) * do.cos(c)], len(some))
+
+    together = formula(crowd)
+    assert together.shape == (5, 6)
+    for who in range(5):
+        np.testing.assert_allclose(formula(crowd[who : who + 1])[0], together[who], rtol=1e-12, atol=1e-12)
+    assert arithmetic(1).any(crowd[0, 0] < 9.0)
+    assert not arithmetic(5).any(crowd[:, 0] > 9.0)

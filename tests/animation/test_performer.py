@@ -220,7 +220,7 @@ def test_a_posture_follows_the_emotion_slowly(library: UnitLibrary, performer: P
         state, pose = performer.advance(state, script.at(tick), script.signal(), DT)
         chest.append(float(pose.rotation[0, J["chest"], 0]))
     assert np.abs(np.diff(chest)).max() < 0.01
-    assert state.playback.weight[0, 0, EMOTIONS.index("joy")] > 0.95
+    assert state.weight[0, 0, EMOTIONS.index("joy")] > 0.95
 
 
 def test_modes_hold_what_they_do_not_show(library: UnitLibrary, performer: Performer) -> None:
@@ -245,7 +245,7 @@ def test_gaze_eyes_lead_and_the_head_follows(library: UnitLibrary, performer: Pe
             state, script.at(tick), script.signal(gaze=GAZE_CUSTOMER if tick < 20 else GAZE_AWAY), DT
         )
         eyes.append(float(pose.gaze[0, 0]))
-        head.append(float(state.life.head[0, 0, 0]))
+        head.append(float(state.head[0, 0]))
     assert eyes[22] < -0.7, "the eyes are there at once"
     assert abs(head[22]) < 0.4 * abs(head[59]), "the head takes its time"
     assert eyes[59] > eyes[23], "as the head arrives the eyes return"

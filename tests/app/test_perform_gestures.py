@@ -114,7 +114,7 @@ def test_the_arm_really_strikes_then(acting: StepAssets) -> None:
                 stroke_s = float(decisions.start_time_s[0, layer] + decisions.stroke_s[0, layer])
                 moments = world.speech.cues.time_s[world.speech.cues.gesture == columns.index(unit)]
                 due[unit] = float(moments[np.abs(moments - stroke_s).argmin()])
-            to_stroke_s = float(performer.playback.to_stroke_s[0, layer])
+            to_stroke_s = float(performer.to_stroke_s[0, layer])
             if unit in due and abs(to_stroke_s) <= TICK_S / 2:
                 assert world.time_s - TICK_S == pytest.approx(due.pop(unit), abs=0.1)
                 seen += 1

@@ -57,7 +57,7 @@ def watch(device: Device, mode: str) -> Seen:
             assert body.performer is not None
             assert body.face_signal is not None
             assert body.pose is not None
-            unit = body.performer.playback.unit[0]
+            unit = body.performer.unit[0]
             rows.append((unit.copy(), unit == rest, body.face_signal.shown, body.pose.rotation[0].copy()))
     window.draw()
     played = window.renderer.read_pixels().astype(int)
