@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import GAZE_CUSTOMER, Performer, PerformerState, PerformSignal, Pose, Rig, SpringChain
-from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.app.bench_pose_floor import numpy_floor
 from game.app.bench_rows import Row, row

@@ -1,4 +1,4 @@
-"""What a tick plays: rows of takes, loops, traces; bilinear quaternions, numbers alone and in company."""
+"""What a tick plays: rows of takes, loops, traces; bilinear quaternions."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import pytest
 from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation import rows as rw
-from game.animation.arithmetic import Curve, arithmetic, columns, numbers
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
@@ -63,21 +62,3 @@ def test_units_without_motion_or_with_unknown_contacts_are_refused(library: Unit
     odd = MotionUnit("odd", "posture", seven, seven, seven, contacts={"left_hand": "moon"}, variants=span)
     with pytest.raises(BadInput, match=r"moon.*|table"):
         bake(UnitLibrary([odd], library.clips), ("posture",))
-
-
-def test_numbers_are_the_same_alone_and_in_company() -> None:
-    crowd = np.random.default_rng(4).normal(size=(5, 3))
-    curve = Curve(np.array([-1.0, 0.0, 0.5]), np.array([2.0, 0.0, 1.0]))
-
-    def formula(some: np.ndarray) -> np.ndarray:
-        do = arithmetic(len(some))
-        a, b, c = numbers(some)
-        found = [do.sin(a) + do.exp(b), do.least(a, do.most(b, c)), do.where(a < b, c, do.hypot(a, b)), 7.0]
-        return columns([*found, do.curve(curve, c), do.arctan2(a, b) * do.cos(c)], len(some))
-
-    together = formula(crowd)
-    assert together.shape == (5, 6)
-    for who in range(5):
-        np.testing.assert_allclose(formula(crowd[who : who + 1])[0], together[who], rtol=1e-12, atol=1e-12)
-    assert arithmetic(1).any(crowd[0, 0] < 9.0)
-    assert not arithmetic(5).any(crowd[:, 0] > 9.0)
