@@ -50,7 +50,11 @@ def rows() -> list[Row]:
     for n in _COUNTS:
         state, decisions, signal, pose = _stand(performer, planner, n)
         tick = partial(performer.advance, state, decisions, signal, _TICK_S)
-        works = [numpy_floor(plain.skeleton, clip, n), partial(_everything, tick, plain), tick]
+        works: list[Callable[[], object]] = [
+            numpy_floor(plain.skeleton, clip, n),
+            partial(_everything, tick, plain),
+            tick,
+        ]
         floor, everything, alone = _alternate(works, n)
         least = min(floor)
         who = "1 character" if n == 1 else f"{n} characters"
