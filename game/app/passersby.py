@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import Performer, PerformerState, PerformSignal, Pose, Rig
-from game.animation.walking import walk
+from game.animation.walking import Walk
 from game.app.rig import load_rig
 from game.app.strolls import CADENCE_HZ, Place, Strolls
 from game.app.world import TICK_S, World
@@ -88,7 +88,7 @@ class Passersby:
     def __init__(self, cast: Cast, planner: Planner, performer: Performer, seed: int) -> None:
         self._cast, self._seed = cast, seed
         self._move_by(planner, performer)
-        self._count = len(cast.looks)
+        self._count, self._walk = len(cast.looks), Walk()
         self._strolls = Strolls(self._count, seed)
         self._mood = np.zeros((self._count, len(EMOTIONS)))
         for who in range(self._count):
@@ -153,7 +153,7 @@ class Passersby:
         size = self._cast.size
         speed = np.array([place.speed for place in places])
         phase = time_s * CADENCE_HZ / size + 0.37 * np.arange(self._count)
-        pose = walk(pose, phase, speed / CADENCE_HZ, np.array([place.walking for place in places]))
+        pose = self._walk(pose, phase, speed / CADENCE_HZ, np.array([place.walking for place in places]))
         builds = zip(places, size.tolist(), self._cast.girth.tolist(), strict=True)
         world = np.stack([_world(*build) for build in builds])
         matrices: dict[int, NDArray[np.float32]] = {}
