@@ -6,16 +6,18 @@ from typing import Any
 
 import moderngl
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from game.render.daylight import Daylight
 from game.render.device import PREMULTIPLIED, Device, Owner, layout, set_uniforms
 
-__all__ = ["Sky", "cloud_picture", "sky_share"]
+__all__ = ["Sky", "cloud_picture", "sky_cells", "sky_share"]
 
 Floats = NDArray[np.floating[Any]]
 
 LOWEST = 0.74  # of the painting's height: no cloud drifts lower
+_CELL = 6  # texels of the mask: side of a rectangle that is drawn if there is sky in it
 _STEP = 8  # the mask is so much coarser than the painting, which is blurred anyway
 _SIZE = (384, 48)
 _SEED, _CLOUDS = 21, 11
@@ -29,6 +31,32 @@ def sky_share(backdrop: NDArray[np.uint8]) -> Floats:
     # What is blue far below is no sky: flags, windows, awnings.
     up = 1.0 - np.arange(len(blue)) / len(blue)
     return np.asarray(blue * np.clip((up - LOWEST) / 0.06, 0.0, 1.0)[:, None])
+
+
+def sky_cells(share: Floats) -> NDArray[np.float64]:
+    """(n, 4) left, low, right, high of rectangles that hold all sky of a mask (h, w), first row at the bottom, in
+    parts of its width and height; mirrored at both sides, as the painting is where a camera turns beyond it.
+
+    They share edges and never overlap.
+    """
+    height, width = share.shape
+    # The filter reaches into the next texel.
+    blue = sliding_window_view(np.pad(share > 0.0, 1), (3, 3)).any(axis=(2, 3))
+    cells: list[tuple[float, float, float, float]] = []
+    for low in range(0, height, _CELL):
+        rows = blue[low : low + _CELL]
+        any_blue = [bool(rows[:, x : x + _CELL].any()) for x in range(0, width, _CELL)]
+        first: int | None = None
+        for number, is_blue in enumerate([*any_blue, False]):
+            if is_blue and first is None:
+                first = number
+            elif not is_blue and first is not None:
+                right = min(number * _CELL, width)
+                cells.append((first * _CELL / width, low / height, right / width, min(low + _CELL, height) / height))
+                first = None
+    own = np.array(cells, dtype=np.float64).reshape(-1, 4)
+    left, right = own[:, [2, 1, 0, 3]] * (-1, 1, -1, 1), own[:, [2, 1, 0, 3]] * (-1, 1, -1, 1) + (2, 0, 2, 0)
+    return np.concatenate([left, own, right])
 
 
 def cloud_picture() -> Floats:
@@ -57,11 +85,15 @@ class Sky(Owner):
         self._context = device.context
         self._program = self.own(device.program("strip.vert.glsl", "sky.frag.glsl"))
         set_uniforms(self._program, mask=0, clouds=1, lowest=LOWEST)
-        self._mask = self._picture(sky_share(backdrop)[::-1])
+        share = sky_share(backdrop)[::-1]
+        self._mask = self._picture(share)
+        self._cells = sky_cells(share)
         self._clouds = self._picture(cloud_picture())
         self._clouds.repeat_x = True
         corner = self.own(device.context.buffer(np.array([-1, -1, 1, -1, -1, 1, 1, 1], dtype=np.float32)))
-        self._span = self.own(device.context.buffer(reserve=16, dynamic=True))
+        self._span = self.own(device.context.buffer(reserve=max(len(self._cells), 1) * 16, dynamic=True))
+        self._place: tuple[float, float, float, float] | None = None  # for which the spans are
+        self._shown = 0
         entries = [layout(self._program, corner, corner="2f"), layout(self._program, self._span, span="4f/i")]
         self._array = self.own(device.vertex_array(self._program, entries))
 
@@ -77,10 +109,15 @@ class Sky(Owner):
         self, target: moderngl.Framebuffer, place: tuple[float, float, float, float], time_s: float, day: Daylight
     ) -> None:
         """Lay the clouds of a moment over the far plane of ``target``; ``place``: as the backdrop is placed."""
-        low = (LOWEST - place[3]) / place[1] * 2.0 - 1.0
-        if low >= 1.0:
+        if place != self._place:
+            scale, offset = np.tile(place[:2], 2), np.tile(place[2:], 2)
+            spans = (self._cells - offset) / scale * 2.0 - 1.0
+            spans = spans[(spans[:, :2] < 1.0).all(axis=1) & (spans[:, 2:] > -1.0).all(axis=1)].astype(np.float32)
+            self._place, self._shown = place, len(spans)
+            if len(spans):
+                self._span.write(spans)
+        if not self._shown:
             return
-        self._span.write(np.array([-1.0, low, 1.0, 1.0], dtype=np.float32))
         target.use()
         self._context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         self._context.depth_func = "<="
@@ -90,5 +127,5 @@ class Sky(Owner):
         self._clouds.use(1)
         tint = tuple(float(v) for v in 0.55 * day.sky + 0.45 * day.horizon)
         set_uniforms(self._program, place=place, drift=time_s * 0.0021, tint=tint)
-        self._array.render(moderngl.TRIANGLE_STRIP, vertices=4)
+        self._array.render(moderngl.TRIANGLE_STRIP, vertices=4, instances=self._shown)
         target.depth_mask = True

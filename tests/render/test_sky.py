@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from game.render import FrameView, Renderer, level_named
-from game.render.sky import cloud_picture, sky_share
+from game.render.sky import cloud_picture, sky_cells, sky_share
 
 
 def test_the_blue_of_the_painting_is_sky_and_the_rest_is_not(backdrop) -> None:
@@ -29,6 +29,22 @@ def test_clouds_repeat_sideways_without_a_seam() -> None:
     inside = np.abs(np.diff(cover, axis=1)).max()
     assert np.abs(cover[:, 0] - cover[:, -1]).max() <= inside
     assert not cover[-1].any(), "nothing is cut off at the top"
+
+
+def test_the_rectangles_that_are_drawn_hold_all_sky_once_and_little_else(backdrop) -> None:
+    share = sky_share(backdrop)[::-1]
+    height, width = share.shape
+    cover = np.zeros((height, 3 * width), int)
+    for left, low, right, high in sky_cells(share):
+        x = slice(round((left + 1) * width), round((right + 1) * width))
+        cover[round(low * height) : round(high * height), x] += 1
+    assert cover.max() == 1, "what is laid twice is too bright"
+    own = cover[:, width : 2 * width]
+    assert own[share > 0].all()
+    assert own.sum() < 3 * (share > 0).sum()
+    assert np.array_equal(cover[:, :width], own[:, ::-1]), "the painting is mirrored at its sides"
+    assert np.array_equal(cover[:, 2 * width :], own[:, ::-1])
+    assert len(sky_cells(np.zeros((8, 8)))) == 0
 
 
 @pytest.mark.gl
