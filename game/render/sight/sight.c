@@ -128,7 +128,7 @@ static bool is_line(const Job *job, int32_t number) {
     bool one = is_front(job, face[0]), other = is_front(job, face[1]);
     if (one == other) return false;
     int32_t front = one ? face[0] : face[1];
-    return job->side[front] != HIDDEN || line_shows(job, job->place[edge[1]], job->place[edge[2]]);
+    return job->side[front] == CUT || line_shows(job, job->place[edge[1]], job->place[edge[2]]);
 }
 
 EXPORT(find) {
