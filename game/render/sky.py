@@ -41,7 +41,7 @@ def sky_cells(share: Floats) -> NDArray[np.float64]:
     """
     height, width = share.shape
     # The filter reaches into the next texel.
-    blue = sliding_window_view(np.pad(share > 0.0, 1), (3, 3)).any(axis=(2, 3))
+    blue: NDArray[np.bool_] = sliding_window_view(np.pad(share > 0.0, 1), (3, 3)).max(axis=(2, 3))
     cells: list[tuple[float, float, float, float]] = []
     for low in range(0, height, _CELL):
         rows = blue[low : low + _CELL]
