@@ -113,22 +113,31 @@ static bool face_shows(const Job *job, const int32_t *corner) {
     return shows(job, box, plane(a, b, c), least3(a.near, b.near, c.near), most3(a.near, b.near, c.near));
 }
 
+// Whether something within an outline's reach is farther than its edge: only there is it drawn.
 static bool line_shows(const Job *job, Place a, Place b) {
-    Cells box = cells(
-        job, least(a.x, b.x), least(a.y, b.y), most(a.x, b.x), most(a.y, b.y), job->line_cells + 1.0f);
-    float near = most(a.near, b.near);
-    return shows(job, box, (Plane){near, 0.0f, 0.0f}, near, near);
+    float reach = job->line_cells + 1.0f, near = most(a.near, b.near) * SLACK;
+    Cells box = cells(job, least(a.x, b.x), least(a.y, b.y), most(a.x, b.x), most(a.y, b.y), reach);
+    float dx = b.x - a.x, dy = b.y - a.y, share = 1.0f / most(sqrtf(dx * dx + dy * dy), 1e-6f);
+    for (int32_t x = box.x0; x <= box.x1; x += 4) {
+        Four away = ((MIDDLE + ((float)x - a.x)) * dy - ((float)box.y0 + 0.5f - a.y) * dx) * share;
+        for (int32_t y = box.y0; y <= box.y1; y++) {
+            const Four *cell = (const Four *)(const void *)&job->grid[y * job->columns + x];
+            if (__builtin_wasm_any_true_v128((away <= reach) & (away >= -reach) & (*cell <= near))) return true;
+            away -= dx * share;
+        }
+    }
+    return false;
 }
 
 static bool is_front(const Job *job, int32_t face) { return face >= 0 && job->side[face] != BACK; }
 
-// An outline lies between a front and a back face; that of a hidden face may still look out from behind what hides it.
+// An outline lies between a front and a back face; that of a hidden face may look out from behind what hides it.
 static bool is_line(const Job *job, int32_t number) {
     const int32_t *face = job->face[number], *edge = job->edge[number];
     bool one = is_front(job, face[0]), other = is_front(job, face[1]);
     if (one == other) return false;
     int32_t front = one ? face[0] : face[1];
-    return job->side[front] == CUT || line_shows(job, job->place[edge[1]], job->place[edge[2]]);
+    return job->columns == 0 || job->side[front] == CUT || line_shows(job, job->place[edge[1]], job->place[edge[2]]);
 }
 
 EXPORT(find) {
