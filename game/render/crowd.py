@@ -19,7 +19,7 @@ __all__ = ["CrowdLook", "CrowdMesh", "CrowdView", "dressed", "load_crowd_mesh"]
 
 Floats = NDArray[np.floating[Any]]
 
-CELL_M = 0.07
+CELL_M = 0.05
 DRESS = ("skin", "hair", "top", "legs", "shoes", "hat")
 _ANKLE_M, _WAIST_M, _NECK_M = 0.10, 0.50, 1.20
 # Hair, skin and cloth of passers-by.
