@@ -51,6 +51,16 @@ def test_a_call_reads_and_writes_what_python_sees(machine: Machine) -> None:
         given.data[0] = 1.0
 
 
+def test_what_goes_wrong_inside_is_raised_and_the_next_call_works(machine: Machine) -> None:
+    double = machine.function("double", "III")
+    given, found = machine.kept(np.ones(4), np.float32), machine.block(4, np.float32)
+    for _ in range(2):
+        with pytest.raises(wasmtime.Trap, match="out of bounds"):
+            double(4, given.address, 0xFFFFFFF0)
+        double(4, given.address, found.address)
+        assert (found.data == 2.0).all()
+
+
 def test_views_stay_where_they_are_while_the_memory_grows(machine: Machine) -> None:
     first = machine.kept(np.ones(100), np.float32)
     large = [machine.block(3_000_000, np.float32) for _ in range(4)]
