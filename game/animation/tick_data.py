@@ -89,7 +89,7 @@ SETUP = _struct(
     ("eyes", "f4", 3),
     ("body", ELLIPSOID, 6),
     ("point_radius", "f4", 7),
-    ("tolerance_m", "f4", 7),
+    ("reach_m", "f4", 8),
     ("table_top_m", "f4"),
     ("table_back_z_m", "f4"),
     ("table_front_z_m", "f4"),

@@ -50,7 +50,8 @@ def setup_of(life: LifeConfig) -> Table:
     setup["limbs"] = limb_table(figure.BONE_LENGTHS[0], figure.BONE_LENGTHS[1], reach)
     setup["feet"], setup["eyes"] = figure.FEET_WORLD, HEAD_CENTRE_OFFSET
     setup["body"] = _body()
-    setup["point_radius"], setup["tolerance_m"] = collision.POINT_RADII, collision.TOLERANCE_M
+    setup["point_radius"] = collision.POINT_RADII
+    setup["reach_m"][0, : len(collision.POINT_RADII)] = collision.POINT_RADII - collision.TOLERANCE_M
     setup["table_top_m"], setup["table_front_z_m"] = TABLE_TOP_M, TABLE_FRONT_Z_M
     setup["table_back_z_m"] = collision.TABLE_BACK_Z_M
     return setup

@@ -25,7 +25,7 @@ typedef struct { float x[WIDE], y[WIDE], z[WIDE], distance[WIDE], slope[WIDE]; }
 
 static void put(Points *points, int i, Vec3 p) { points->x[i] = p.x, points->y[i] = p.y, points->z[i] = p.z; }
 
-static void see(const Ellipsoid *e, const Mat4 *to_sphere, const Points *points, Seen *seen) {
+static void see(const Ellipsoid *e, const Mat4 *to_sphere, const Points *restrict points, Seen *restrict seen) {
     const float(*m)[4] = to_sphere->m;
     for (int i = 0; i < WIDE; i++) {
         float px = points->x[i], py = points->y[i], pz = points->z[i];
@@ -53,10 +53,17 @@ static Mat4 sphere_frame(const Ellipsoid *e, const Rigid *joint) {
     return map;
 }
 
-// A smooth max(depth, 0), 4 × SOFTNESS_M times too large: the difference of two ramps' squares.
-static float soft_depth(float depth) {
-    float outer = most(depth + SOFTNESS_M, 0), inner = most(depth - SOFTNESS_M, 0);
-    return outer * outer - inner * inner;
+// How deep the points are inside, softly and 4 × SOFTNESS_M times too large: the difference of two ramps' squares is a
+// smooth max(depth, 0). -> whether any is.
+static bool soft_depths(const Setup *setup, const Seen *seen, float depth[WIDE]) {
+    int any = 0;
+    for (int i = 0; i < WIDE; i++) {
+        float deep = setup->reach_m[i] - seen->distance[i];
+        float outer = most(deep + SOFTNESS_M, 0), inner = most(deep - SOFTNESS_M, 0);
+        depth[i] = outer * outer - inner * inner;
+        any |= depth[i] > 0;
+    }
+    return any;
 }
 
 // What the contacts of one hand with the body ask for.
@@ -70,18 +77,18 @@ static Vec3 push_from_body(const Setup *setup, const Mat4 maps[BODY], const Poin
         float weight = 0;
         for (int b = 0; b < BODY; b++) {
             Seen seen;
+            float depth[WIDE];
             see(&setup->body[b], &maps[b], &points, &seen);
+            if (!soft_depths(setup, &seen, depth)) continue;
             for (int i = 0; i < POINTS_OF_HAND; i++) {
-                float depth = soft_depth(setup->point_radius[i] - setup->tolerance_m[i] - seen.distance[i]);
-                if (depth <= 0) continue;
                 // The map holds rotation / radius, so its transpose takes position / radius to the gradient.
                 const float(*m)[4] = maps[b].m;
                 float x = seen.x[i] / seen.slope[i], y = seen.y[i] / seen.slope[i], z = seen.z[i] / seen.slope[i];
                 Vec3 away = vec3(
                     m[0][0] * x + m[1][0] * y + m[2][0] * z, m[0][1] * x + m[1][1] * y + m[2][1] * z,
                     m[0][2] * x + m[1][2] * y + m[2][2] * z);
-                float cube = depth * depth * depth;
-                total = add(total, scale(away, cube * depth / (4 * SOFTNESS_M)));
+                float cube = depth[i] * depth[i] * depth[i];
+                total = add(total, scale(away, cube * depth[i] / (4 * SOFTNESS_M)));
                 weight += cube;
             }
         }

@@ -147,12 +147,23 @@ int play(const Tick *tick, Character *c, const Signal *signal) {
 }
 
 void say(const Tick *tick, const Layer *layer, bool speed, float *restrict out) {
-    memset(out, 0, ROW * sizeof *out);
+    // One after the other: so many numbers stay in the cache next to the processor.
+    const float *rows[2 * EMOTIONS];
+    float shares[2 * EMOTIONS];
+    int count = 0;
     for (int k = 0; k < EMOTIONS; k++) {
         float weight = layer->weight[k];
         if (weight == 0) continue;
-        const float *before = tick->bank->rows[layer->row[k]], *after = before + ROW;
-        float to = weight * (speed ? layer->rate : layer->part[k]), from = speed ? -to : weight - to;
-        for (int i = 0; i < ROW; i++) out[i] += from * before[i] + to * after[i];
+        const float *before = tick->bank->rows[layer->row[k]];
+        float to = weight * (speed ? layer->rate : layer->part[k]);
+        rows[count] = before, shares[count++] = speed ? -to : weight - to;
+        rows[count] = before + ROW, shares[count++] = to;
+    }
+    enum { WIDE = 16 };
+    for (int first = 0; first < ROW; first += WIDE) {
+        float sum[WIDE] = {0};
+        for (int r = 0; r < count; r++)
+            for (int i = 0; i < WIDE; i++) sum[i] += shares[r] * rows[r][first + i];
+        memcpy(out + first, sum, sizeof sum);
     }
 }

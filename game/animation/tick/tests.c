@@ -22,7 +22,7 @@ static const uint32_t LAYOUT[] = {
     AT(Setup, eye_yaw_rad), AT(Setup, eye_pitch_rad), AT(Setup, nod_rad), AT(Setup, breath), AT(Setup, blink_at),
     AT(Setup, blink), AT(Setup, effect_count), AT(Setup, effects), AT(Setup, run_count), AT(Setup, runs),
     AT(Setup, joint), AT(Setup, parent), AT(Setup, offset), AT(Setup, frame_joint), AT(Setup, bones), AT(Setup, limbs),
-    AT(Setup, feet), AT(Setup, eyes), AT(Setup, body), AT(Setup, point_radius), AT(Setup, tolerance_m),
+    AT(Setup, feet), AT(Setup, eyes), AT(Setup, body), AT(Setup, point_radius), AT(Setup, reach_m),
     AT(Setup, table_top_m), AT(Setup, table_back_z_m), AT(Setup, table_front_z_m),
     SIZE(Layer), AT(Layer, unit), AT(Layer, active), AT(Layer, first), AT(Layer, frames), AT(Layer, weight),
     AT(Layer, before_s), AT(Layer, lead_rate), AT(Layer, after_rate), AT(Layer, hold_first), AT(Layer, hold_length),

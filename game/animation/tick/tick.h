@@ -86,7 +86,8 @@ typedef struct {
     float eyes[3];                         // between the eyes, in the head's frame
 
     Ellipsoid body[BODY];
-    float point_radius[POINTS_OF_HAND], tolerance_m[POINTS_OF_HAND];
+    float point_radius[POINTS_OF_HAND];
+    float reach_m[POINTS_OF_HAND + 1];     // radii less what may press into the soft body, and a number to spare
     float table_top_m, table_back_z_m, table_front_z_m;
 } Setup;
 
