@@ -1,18 +1,13 @@
-"""Model-space matrices of the joints that contacts, limbs and the gaze need: torso, head, arms and legs."""
+"""The joints that contacts, limbs, the gaze and the fit need: torso, head, arms and legs, parents first."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from game.animation.chains import chains_of, to_model
 from game.core.humanoid import REFERENCE
 
-__all__ = ["BONES", "BONE_LENGTHS", "ENDS", "FEET_WORLD", "FIGURE", "PARENTS", "WHERE", "figure_matrices"]
-
-Floats = NDArray[np.floating[Any]]
+__all__ = ["BONES", "BONE_LENGTHS", "ENDS", "FEET_WORLD", "FIGURE", "PARENTS", "WHERE"]
 
 _LEVELS = (
     ("hips",),
@@ -26,7 +21,7 @@ _LEVELS = (
 _NAMES = tuple(name for level in _LEVELS for name in level)
 
 WHERE = {name: i for i, name in enumerate(_NAMES)}
-"""Joint name -> place in figure_matrices."""
+"""Joint name -> place in FIGURE."""
 FIGURE: NDArray[np.intp] = np.array([REFERENCE.index[name] for name in _NAMES])
 """(19,) the joints in REFERENCE."""
 
@@ -42,15 +37,7 @@ BONE_LENGTHS = np.linalg.norm(REFERENCE.rest_translation[ENDS[1:]], axis=-1)
 """(2, 4) metres: upper and lower bones."""
 FEET_WORLD = REFERENCE.rest_model[ENDS[2, 2:], :3, 3].astype(np.float32)
 """(2, 3) where the ankles stand."""
-
-
 PARENTS = np.array([-1, *(_NAMES.index(REFERENCE.names[REFERENCE.parents[joint]]) for joint in FIGURE[1:])])
 """(19,) each joint's parent in FIGURE."""
-_CHAINS = chains_of(PARENTS)
 for _array in (FIGURE, BONES, BONE_LENGTHS, ENDS, FEET_WORLD, PARENTS):
     _array.setflags(write=False)
-
-
-def figure_matrices(local: Floats) -> None:
-    """(n, 19, 4, 4) float32 local matrices of FIGURE -> in place to model space."""
-    to_model(local, _CHAINS)

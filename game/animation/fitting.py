@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from game.animation import figure
 from game.animation.body_size import REGIONS, BodySize
 from game.animation.collision import BODY, TABLE_BACK_Z_M
 from game.animation.reach import LIMB, STRAIGHT, limb_table
@@ -77,27 +78,7 @@ def _regions() -> tuple[Floats, Floats]:
 
 _CENTRES, _RADII = _regions()
 _SIDES = ("left", "right")
-_LIMBS = (
-    *((f"{s}Shoulder", f"{s}UpperArm", f"{s}LowerArm", f"{s}Hand") for s in _SIDES),
-    *(("hips", f"{s}UpperLeg", f"{s}LowerLeg", f"{s}Foot") for s in _SIDES),
-)
-"""What the upper bone hangs on, upper bone, lower bone and end of both arms and both legs."""
-_PARTS = np.array([[REFERENCE.index[name] for name in limb] for limb in _LIMBS])
-_ENDS = [*_PARTS[:, 3].tolist(), REFERENCE.index["head"]]
-
-
-def _figure() -> NDArray[np.intp]:
-    """(19,) the joints of REFERENCE that lead to hands, feet and head, parents first."""
-    found = set()
-    for end in _ENDS:
-        while end >= 0:
-            found.add(end)
-            end = int(REFERENCE.parents[end])
-    return np.array(sorted(found))
-
-
-_FIGURE = _figure()
-for _array in (_CENTRES, _RADII, _PARTS, _FIGURE):
+for _array in (_CENTRES, _RADII):
     _array.setflags(write=False)
 
 # As in skin/fit.h.
@@ -117,7 +98,7 @@ _LIMITS = {
 """Measures at which something counts not at all, and at which it counts fully."""
 _FIT = np.dtype(
     [
-        ("joint", _JOINT, len(_FIGURE)), ("limb", _LIMB, len(_LIMBS)), ("part", _PART, len(REGIONS)),
+        ("joint", _JOINT, len(figure.FIGURE)), ("limb", _LIMB, figure.ENDS.shape[1]), ("part", _PART, len(REGIONS)),
         ("hips_reference", "<f4", 3), ("hips", "<f4", 3), ("palm", "<f4", (2, 3)),
         ("leg", "<f4"), ("hand", "<f4"), ("arm", "<f4", 2), ("table_m", "<f4"), ("clear", "<f4"), ("middle", "<f4"),
         *((name, "<f4", 2) for name in _LIMITS),
@@ -152,17 +133,15 @@ class Fitting:
     def table(self) -> NDArray[np.void]:
         """(1,) Fit of skin/fit.h."""
         fit = np.zeros(1, dtype=_FIT)
-        place = {int(joint): i for i, joint in enumerate(_FIGURE)}
         joint = fit[0]["joint"]
-        joint["turn"] = _FIGURE
-        joint["parent"] = [place.get(int(parent), -1) for parent in REFERENCE.parents[_FIGURE]]
-        joint["reference"], joint["mine"] = REFERENCE.rest_translation[_FIGURE], self.rest[_FIGURE]
+        joint["turn"], joint["parent"] = figure.FIGURE, figure.PARENTS
+        joint["reference"], joint["mine"] = REFERENCE.rest_translation[figure.FIGURE], self.rest[figure.FIGURE]
         limb = fit[0]["limb"]
-        limb["joints"] = np.vectorize(place.__getitem__)(_PARTS)
+        limb["joints"] = figure.BONES.reshape(4, 4).T
         limb["bones"] = self.limbs
         limb["foot_reference"][2:], limb["foot"][2:] = self.feet
         part = fit[0]["part"]
-        part["joint"] = [place[REFERENCE.index[region]] for region in REGIONS]
+        part["joint"] = [figure.WHERE[region] for region in REGIONS]
         for body, name in enumerate(("reference", "mine")):
             part[name]["centre"], part[name]["radius"] = self.centre[body], self.radius[body]
         fit["hips_reference"], fit["hips"] = _REST["hips"], self.hips
@@ -196,7 +175,7 @@ def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fittin
     )
     both = np.stack([REFERENCE.rest_translation, rest])
     # Bodies side by side, upper and lower bones, arms and legs: (2, 2, 4).
-    lengths = np.maximum(np.linalg.norm(both[:, _PARTS[:, 2:].T], axis=-1), 1e-4)
+    lengths = np.maximum(np.linalg.norm(both[:, figure.ENDS[1:]], axis=-1), 1e-4)
     arm, leg = lengths[1].sum(0)[:2] / lengths[0].sum(0)[:2], lengths[1].sum(0)[2:] / lengths[0].sum(0)[2:]
     hand = _hand_share(places, float(arm.mean()))
     centre, radius = _places(where, size)

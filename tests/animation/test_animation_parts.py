@@ -1,32 +1,16 @@
-"""What a tick plays: rows of takes, loops, traces; bilinear quaternions."""
+"""What a tick plays: rows of takes, loops, traces."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from game.animation import bilinear as bl
 from game.animation import channels as ch
 from game.animation import rows as rw
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
 from game.embos import MotionUnit, UnitLibrary, Variant
-
-
-def random_quaternions(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
-    return quat.normalize(np.random.default_rng(seed).normal(size=(*shape, 4))).astype(np.float32)
-
-
-def test_bilinear_maps_are_the_quaternion_algebra() -> None:
-    a, b = random_quaternions((3, 5), 1), random_quaternions((3, 5), 2)
-    np.testing.assert_allclose(bl.multiply(a, b), quat.multiply(a, b), atol=1e-6)
-    np.testing.assert_allclose(bl.rotation_matrix(a), quat.to_matrix(a), atol=1e-6)
-    back = bl.from_matrix(np.ascontiguousarray(quat.to_matrix(a)))
-    np.testing.assert_allclose(np.abs((back * a).sum(-1)), 1.0, atol=1e-6)
-    half_turns = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], dtype=np.float32)
-    back = bl.from_matrix(quat.to_matrix(half_turns))
-    np.testing.assert_allclose(np.abs((back * half_turns).sum(-1)), 1.0, atol=1e-6)
 
 
 def test_a_looped_span_has_no_seam() -> None:
