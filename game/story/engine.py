@@ -11,7 +11,6 @@ from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Script
-from game.story.passages import Stretch
 from game.story.ready import ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way, spoken
 from game.story.standing import Log, StoryState
 from game.story.state import restore, save
@@ -52,7 +51,7 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
         run.walk(event.node, None)
     else:
         run.walk(state.node, _known(event.kind, script))
-    return run.state(), run.beat()
+    return run.result()
 
 
 def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -67,9 +66,10 @@ def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple
         run.wait_at(run.ready.node(state.node))
     else:
         run.lay(run.laid)
-    resumed = run.state()._replace(log=run.before.log)
-    run.lines = tuple([run.spoken(run.ready.line(script.lines[name])) for name in run.before.last_lines])
-    return resumed, run.beat()
+    before = run.before
+    run.lines = tuple([run.spoken(run.ready.line(script.lines[name])) for name in before.last_lines])
+    fresh, beat = run.result()
+    return fresh._replace(log=before.log), beat
 
 
 def _known(kind: str, script: Script) -> str:
@@ -79,27 +79,26 @@ def _known(kind: str, script: Script) -> str:
 
 
 class _Run(Scope):
-    """The working copy of where a talk stands during one step. said, chosen, passed: as bits; told: how the player's
-    line landed, ``veiled`` where the words hide it."""
+    """The working copy of where a talk stands during one step. told: how the player's line landed, ``veiled`` where the
+    words hide it; nodes, lines, stimuli: what came in this step; options: the choices as the player sees them."""
 
     names: dict[str, Value]
     __slots__ = (
-        "ahead", "before", "chosen", "counter", "ended", "laid", "lines", "node", "nodes", "options",
-        "passed", "ready", "returns", "said", "script", "stimuli", "talk", "told", "turn", "variables",
+        "ahead", "before", "counter", "ended", "laid", "lines", "node", "nodes", "options", "past", "ready", "returns",
+        "stimuli", "talk", "told", "turn", "variables",
     )  # fmt: skip
 
     def __init__(self, script: Script, before: StoryState, env: Mapping[str, Value]) -> None:
         if before.talk.ready.script is not script:
             before = restore(script, save(before))
         (
-            self.talk, self.node, _, self.ended, self.counter, self.turn, self.returns, self.said, self.chosen,
-            self.passed, self.variables, self.laid, _,
+            talk, self.node, _, self.ended, self.counter, self.turn, self.returns, self.past, self.variables, self.laid,
+            _,
         ) = self.before = before  # fmt: skip
-        ready = self.ready = self.talk.ready
-        self.script = ready.script
+        self.talk, self.ready = talk, talk.ready
         names = self.names = environment(env)
         names.update(self.variables)
-        names["item"], names["visit"] = ready.item, float(self.talk.visit)
+        names.update(talk.names)
         told = str(names["quality"]) if names["tells"] else "none"
         self.told = "veiled" if told == "none" else told
         self.ahead: list[float] = []
@@ -113,12 +112,12 @@ class _Run(Scope):
         return self.before.visits.get(node, 0) + self.nodes.count(node)
 
     def seen(self, name: str) -> bool:
-        return bool(self.everything & self.script.bits[name])
+        return bool(self.everything & self.ready.script.bits.seen[name])
 
     @property
     def everything(self) -> int:
-        """What was said, chosen or passed, on earlier visits, too, as bits."""
-        return self.said | self.chosen | self.passed | self.talk.earlier_bits
+        """The bits of what was said, chosen or passed, on earlier visits, too."""
+        return self.past | self.talk.earlier_bits
 
     def chance(self) -> float:
         # Numbers come cheaper by the half dozen; those that nobody takes are drawn again in the next step.
@@ -139,7 +138,7 @@ class _Run(Scope):
             offer = self.ready.offer(self.told)
             if offer is not None:
                 self.say_one(offer)
-        self.chosen |= choice.bit
+        self.past |= choice.bit
         if choice.effects:
             # What the choice itself makes her feel is judged with its act, by whoever knows the feelings.
             self.apply(choice.effects)
@@ -158,7 +157,7 @@ class _Run(Scope):
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
         ready, told = self.ready, self.told
-        passages = ready.passages(told)
+        passages = ready.passages[told]
         for _ in range(_MAX_STEPS):
             passage = passages.get(target) or ready.passage(self.resolved(target), told)
             node = passage.last
@@ -166,7 +165,7 @@ class _Run(Scope):
                 ending = OUTCOMES[pending]
                 if node.waits or (ending and node.end is not None):
                     # The market's answer comes after the reaction and before the talk goes on.
-                    outcome_node = self.script.outcomes.get(pending)
+                    outcome_node = self.ready.script.outcomes.get(pending)
                     if ending:
                         closing, self.returns = pending, ()
                     elif outcome_node is not None:
@@ -178,12 +177,23 @@ class _Run(Scope):
             if closing is not None and node.waits:
                 break
             self.node = node.id
-            self.follow(passage.stretches)
+            for nodes, lines, past, stimuli, effects, says in passage.stretches:
+                self.nodes += nodes
+                self.past |= past
+                if lines:
+                    self.lines += lines
+                if stimuli:
+                    self.stimuli += stimuli
+                if effects:
+                    self.apply(effects)
+                for test, group in says:
+                    if test is None or test(self):
+                        self.say_one(group)
             if node.end is not None:
                 self.ended = node.end
                 return
             if node.waits:
-                if self.wait_at(node) or node.id == self.script.home:
+                if self.wait_at(node) or node.id == self.ready.script.home:
                     return
                 target = HOME
             elif node.call is None:
@@ -194,26 +204,12 @@ class _Run(Scope):
         if closing is not None:
             self.ended = closing
         else:
-            self.node = self.script.home
+            self.node = self.ready.script.home
             self.wait_at(ready.node(self.node))
-
-    def follow(self, stretches: Sequence[Stretch]) -> None:
-        """Do what happens on the way."""
-        for nodes, passed, lines, said, stimuli, effects, says in stretches:
-            self.nodes += nodes
-            self.passed |= passed
-            self.lines += lines
-            self.said |= said
-            self.stimuli += stimuli
-            if effects:
-                self.apply(effects)
-            for test, group in says:
-                if test is None or test(self):
-                    self.say_one(group)
 
     def resolved(self, target: str) -> str:
         """A node's own name; ``back`` and ``home`` looked up."""
-        if target in self.script.nodes:
+        if target in self.ready.script.nodes:
             return target
         while target == BACK or target.startswith("after:"):
             if target == BACK:
@@ -221,7 +217,7 @@ class _Run(Scope):
                 self.returns = self.returns[:-1]
             else:
                 target = self.way(self.ready.node(target.removeprefix("after:")).ways)
-        return self.script.home if target == HOME else target
+        return self.ready.script.home if target == HOME else target
 
     def push(self, target: str) -> None:
         self.returns = (*self.returns, target)[-_MAX_RETURNS:]
@@ -243,10 +239,10 @@ class _Run(Scope):
         """One line of those that can be said now."""
         line = group.only
         if line is not None:
-            if (line.again or not self.said & line.bit) and (line.test is None or line.test(self)):
+            if (line.again or not self.past & line.bit) and (line.test is None or line.test(self)):
                 self.say(line)
         else:
-            lots = group.left(self.said, self.talk.earlier_bits).usable(self)
+            lots = group.left(self.past, self.talk.earlier_bits).usable(self)
             if group.recalls:
                 lots = group.least_heard(lots, self.times_heard)
             if lots.items:
@@ -257,8 +253,8 @@ class _Run(Scope):
         return self.before.heard.get(name, 0) + [line.id for line in self.lines].count(name)
 
     def say(self, line: ReadyLine) -> None:
-        if not self.said & line.bit:
-            self.said |= line.bit
+        if not self.past & line.bit:
+            self.past |= line.bit
         elif not line.again:
             return
         self.lines += (line.fixed or self.spoken(line),)
@@ -280,12 +276,12 @@ class _Run(Scope):
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
         """The words with the names in braces filled in, ``keep`` left as it stands."""
-        return filled(self.script, self.ready.item, self.names, text, keep=keep)
+        return filled(self.ready.script, self.ready.item, self.names, text, keep=keep)
 
     # --- choices ---------------------------------------------------------------------------------------------
     def shown(self, choice: ReadyChoice) -> bool:
         """Whether a choice may be seen: not used up, and its condition holds."""
-        if self.chosen & choice.used or (choice.gone and choice.gone & self.everything):
+        if self.past & choice.used or (choice.gone and choice.gone & self.everything):
             return False
         return choice.shown is None or bool(choice.shown(self))
 
@@ -303,7 +299,7 @@ class _Run(Scope):
         drawn: Sequence[ReadyChoice] = ()
         if node.pool is not None:
             seed = self.talk.seed ^ _DRAW_STREAM
-            drawn = draw_choices(node.pool, self, self.chosen, self.everything, seed, self.turn * 64)
+            drawn = draw_choices(node.pool, self, self.past, self.everything, seed, self.turn * 64)
         offered = [(choice, self.variant(choice)) for choice in drawn]
         offered += [(choice, self.variant(choice)) for choice in node.laid if choice.always or self.shown(choice)]
         taken = self.lay(offered, usable=len(drawn))
@@ -328,7 +324,7 @@ class _Run(Scope):
         texts = choice.texts
         if len(texts) == 1:
             return texts[0]
-        said = self.said & choice.mask
+        said = self.past & choice.mask
         if choice.fits:
             lots = choice.fresh.get(said)
             if lots is None:
@@ -355,17 +351,15 @@ class _Run(Scope):
         return Choice(choice.id, choice.act, text.en, text.ja, False, reason, choice.choice.feel)
 
     # --- what came of it -------------------------------------------------------------------------------------
-    def state(self) -> StoryState:
-        """Where the talk stands now."""
+    def result(self) -> tuple[StoryState, Beat]:
+        """Where the talk stands now, and what the player is told of it."""
+        timed = None
         if self.ended is not None:
             self.laid, self.options = (), ()
-        return StoryState(
-            self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.said, self.chosen,
-            self.passed, self.variables, self.laid, Log(self.talk, self.before.log, self.nodes, self.lines),
+        elif self.node in self.ready.timers:
+            timed = timer_at(self.ready.timers[self.node], self.options)
+        fresh = StoryState(
+            self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.past, self.variables,
+            self.laid, Log(self.talk, self.before.log, self.nodes, self.lines),
         )  # fmt: skip
-
-    def beat(self) -> Beat:
-        """What was said and what can be chosen."""
-        timer = self.ready.node(self.node).timer if self.ended is None and self.node else None
-        timed = None if timer is None else timer_at(timer, self.options)
-        return Beat(self.node, self.lines, self.options, self.stimuli, self.ended, timed)
+        return fresh, Beat(self.node, self.lines, self.options, self.stimuli, self.ended, timed)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from game.core.errors import Where
 from game.story.acts import ActTable
+from game.story.bits import Bits
 from game.story.expressions import Expression, Names
 from game.story.text import Pronoun, Text
 from game.story.vocabulary import Type, Value
@@ -263,14 +264,9 @@ class Script:
         return {}
 
     @cached_property
-    def bits(self) -> Mapping[str, int]:
-        """By the id of a line, choice or node, one bit of a whole number: a set of them is a number."""
-        return {name: 1 << at for at, name in enumerate(self.ids)}
-
-    @cached_property
-    def ids(self) -> tuple[str, ...]:
-        """The ids of lines, choices and nodes in the order of their bits; what has the same id has the same bit."""
-        return tuple({**self.lines, **self.choices, **self.nodes})
+    def bits(self) -> Bits:
+        """A bit of a whole number for every line, choice and node."""
+        return Bits(tuple(self.lines), tuple(self.choices), tuple(self.nodes))
 
     @cached_property
     def lines(self) -> Mapping[str, LineDef]:

@@ -13,13 +13,12 @@ __all__ = ["Passage", "Stretch", "passage_from"]
 
 
 class Stretch(NamedTuple):
-    """Part of a passage. First what happens in any case: the nodes passed, whose bits are ``passed``, and the lines
-    said, whose bits are ``said``; then the effects, then the groups of lines of which one each may be said."""
+    """Part of a passage. First what happens in any case: nodes passed and lines said, the bits of which are ``past``;
+    then the effects, then the groups of lines of which one each may be said."""
 
     nodes: tuple[str, ...] = ()
-    passed: int = 0
     lines: tuple[Spoken, ...] = ()
-    said: int = 0
+    past: int = 0
     stimuli: tuple[Stimulus, ...] = ()
     effects: tuple[ReadyEffect, ...] = ()
     says: tuple[ReadySay, ...] = ()
@@ -27,9 +26,8 @@ class Stretch(NamedTuple):
     def after(self, node: ReadyNode) -> Stretch:
         """The same with a node passed as well, which nothing has been asked before."""
         stimuli = self.stimuli if node.stimulus is None else (*self.stimuli, node.stimulus)
-        return self._replace(
-            nodes=(*self.nodes, node.id), passed=self.passed | node.bit, stimuli=stimuli, effects=node.effects
-        )
+        nodes, past = (*self.nodes, node.id), self.past | node.bit
+        return self._replace(nodes=nodes, past=past, stimuli=stimuli, effects=node.effects)
 
     def saying(self, say: ReadySay) -> Stretch:
         """The same with a group of lines as well."""
@@ -38,7 +36,7 @@ class Stretch(NamedTuple):
         if line is None or line.always is None:
             return self._replace(says=(*self.says, say))
         stimuli = self.stimuli if line.stimulus is None else (*self.stimuli, line.stimulus)
-        return self._replace(lines=(*self.lines, line.always), said=self.said | line.bit, stimuli=stimuli)
+        return self._replace(lines=(*self.lines, line.always), past=self.past | line.bit, stimuli=stimuli)
 
 
 class Passage(NamedTuple):

@@ -22,9 +22,9 @@ class Act:
         self.gone = sum([choice.gone for choice, _ in choices])
         self._left: Few[int, Left[ReadyChoice]] = Few()
 
-    def left(self, chosen: int, seen: int) -> Left[ReadyChoice]:
-        """What is left of it where so much was chosen in the talk and seen at the stall."""
-        used = chosen & self.used | seen & self.gone
+    def left(self, past: int, seen: int) -> Left[ReadyChoice]:
+        """What is left of it where so much happened in the talk (past) and ever at the stall (seen), as bits."""
+        used = past & self.used | seen & self.gone
         try:
             return self._left[used]
         except KeyError:
@@ -43,13 +43,13 @@ class Pool:
         self._gone = sum([act.gone for act in acts])
         self._rounds: Few[int, Round] = Few(256)
 
-    def round(self, chosen: int, seen: int) -> Round:
-        """What is left of it where so much was chosen in the talk and seen at the stall."""
-        used = chosen & self._used | seen & self._gone
+    def round(self, past: int, seen: int) -> Round:
+        """What is left of it where so much happened in the talk (past) and ever at the stall (seen), as bits."""
+        used = past & self._used | seen & self._gone
         try:
             return self._rounds[used]
         except KeyError:
-            lefts = {act.name: act.left(chosen, seen) for act in self.acts}
+            lefts = {act.name: act.left(past, seen) for act in self.acts}
             return self._rounds.keep(used, Round({name: left for name, left in lefts.items() if left.items}, self))
 
 

@@ -8,6 +8,7 @@ way in which the player's line landed: for a given item and landing only a few l
 from __future__ import annotations
 
 import itertools
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from typing import Literal
 
@@ -34,15 +35,19 @@ def prepared(script: Script, item: str) -> Prepared:
 
 
 class Prepared:
-    """One script for talks about one item; fills as nodes are passed and never changes what is told."""
+    """One script for talks about one item; fills as nodes are passed and never changes what is told.
+
+    passages: those made so far, by how the player's line landed and by the names of the ways that lead to them.
+    """
 
     def __init__(self, script: Script, item: str, *, settle: bool = True) -> None:
         """settle: leave out what the item rules out; without, every condition is asked in the talk."""
         self.script, self.item, self.settle = script, item, settle
         self.nodes: dict[str, ReadyNode] = {}
+        self.timers = {node.id: node.timer for node in script.nodes.values() if node.timer is not None}
+        self.passages: defaultdict[str, dict[str, Passage]] = defaultdict(dict)
         self._lines: dict[str, ReadyLine] = {}
         self._choices: dict[str, ReadyChoice] = {}
-        self._passages: dict[str, dict[str, Passage]] = {}
         self._offers: dict[str, ReadyGroup | None] = {}
         self._asked: dict[str, Test] = {}
         self._money: Few[int, Text] = Few(4096)
@@ -54,16 +59,9 @@ class Prepared:
             found = self.nodes[name] = ReadyNode(self.script.nodes[name], self)
         return found
 
-    def passages(self, told: str) -> dict[str, Passage]:
-        """The passages made so far where the player's line landed so, by the names of the ways that lead to them."""
-        found = self._passages.get(told)
-        if found is None:
-            found = self._passages[told] = {}
-        return found
-
     def passage(self, name: str, told: str) -> Passage:
         """The passage that begins with a node, where the player's line landed so."""
-        known = self.passages(told)
+        known = self.passages[told]
         found = known.get(name)
         if found is None:
             found = passage_from(self.node(name), self._way_to, lambda node: self.says(node, told))
@@ -86,7 +84,7 @@ class Prepared:
         if found is None:
             test = self.open(line.condition)
             test = never if test is False else test
-            found = self._lines[line.id] = ReadyLine(line, self.script.bits[line.id], test)
+            found = self._lines[line.id] = ReadyLine(line, self.script.bits.lines[line.id], test)
         return found
 
     def choice(self, choice: ChoiceDef) -> ReadyChoice:

@@ -156,15 +156,15 @@ class ReadyGroup:
         self._mask = sum([line.bit for line in lines])
         self._left: Few[int | tuple[int, int], Left[ReadyLine]] = Few()
 
-    def left(self, said: int, earlier: int) -> Left[ReadyLine]:
-        """Those that may still be said. said, earlier: bits of what was said in this talk and on earlier visits."""
-        key: int | tuple[int, int] = said & self._mask
+    def left(self, past: int, earlier: int) -> Left[ReadyLine]:
+        """Those that may still be said. past, earlier: bits of this talk and of earlier visits."""
+        key: int | tuple[int, int] = past & self._mask
         if earlier:
-            key = (said & self._mask, earlier & self._mask)
+            key = (past & self._mask, earlier & self._mask)
         try:
             return self._left[key]
         except KeyError:
-            lines = [(line, line.test) for line in self.lines if line.again or not line.bit & said]
+            lines = [(line, line.test) for line in self.lines if line.again or not line.bit & past]
             return self._left.keep(key, Left(lines, partial(self._by_order, earlier)))
 
     def _by_order(self, earlier: int, lines: Sequence[ReadyLine]) -> Sequence[ReadyLine]:
@@ -180,8 +180,8 @@ class ReadyGroup:
 
 
 class ReadyChoice:
-    """A choice in talks about an item. used: its bit, where it is not offered again in the talk; gone: the same, where
-    it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles;
+    """A choice in talks about an item. used: its bit, where it is not offered again in the talk; gone: those of its
+    id, where it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles;
     always: nothing can keep it from being taken.
 
     texts: its wordings, the bits of which are ``mask``; fresh: by the bits of those said, the others, where each of
@@ -194,10 +194,10 @@ class ReadyChoice:
     )  # fmt: skip
 
     def __init__(self, choice: ChoiceDef, ready: Prepared) -> None:
-        self.choice, self.id, self.bit = choice, choice.id, ready.script.bits[choice.id]
+        self.choice, self.id, self.bit = choice, choice.id, ready.script.bits.choices[choice.id]
         self.act, self.silent, self.weight = choice.act, choice.silent, choice.weight
         self.used = self.bit if choice.once == "talk" else 0
-        self.gone = self.bit if choice.once == "stall" else 0
+        self.gone = ready.script.bits.seen[choice.id] if choice.once == "stall" else 0
         shown, needs = ready.open(choice.condition), ready.open(choice.needs)
         self.hidden, self.ruled_out = shown is False, False in (shown, needs)
         # Whoever takes it from a table of other days asks for what the item settles, too.
@@ -221,12 +221,12 @@ class ReadyNode:
 
     __slots__ = (
         "after", "bit", "call", "effects", "end", "halts", "id", "laid", "node", "pool", "says", "stimulus", "table",
-        "timer", "waits", "way", "ways",
+        "waits", "way", "ways",
     )  # fmt: skip
 
     def __init__(self, node: NodeDef, ready: Prepared) -> None:
         self.node, self.id, self.waits, self.end, self.call = node, node.id, node.waits, node.end, node.call
-        self.bit, self.timer, self.halts = ready.script.bits[node.id], node.timer, node.waits or node.end is not None
+        self.bit, self.halts = ready.script.bits.nodes[node.id], node.waits or node.end is not None
         self.after = f"after:{node.id}"
         self.effects = _effects(node.effects)
         self.stimulus = Stimulus(node.feel, node.id) if node.feel else None

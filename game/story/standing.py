@@ -1,6 +1,6 @@
 """Where a talk stands between two steps, as the next step works on it: whole numbers, tuples, and a log.
 
-What was said, chosen and passed are bits of one script (``Script.bits``). Ids and counts are made of them when somebody
+What was said, chosen and passed is one number (``Script.bits``). Ids and counts are made of them when somebody
 looks, which most steps of most talks never do.
 """
 
@@ -10,8 +10,9 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from game.story.beat import Spoken
+from game.story.bits import bits_of
 from game.story.model import LineDef, Script
-from game.story.prepared import Prepared
+from game.story.prepared import Prepared, prepared
 from game.story.ready import Laid
 from game.story.vocabulary import Value
 
@@ -21,8 +22,8 @@ __all__ = ["Log", "StoryState", "Talk"]
 class Talk(NamedTuple):
     """What stays the same from the first step of a talk to its last.
 
-    earlier: everything seen on earlier visits, and ``earlier_bits`` what the script knows of it; unknown_said,
-    unknown_chosen: what was said and chosen in this talk, and the script does not know any more.
+    earlier: everything seen on earlier visits, and ``earlier_bits`` what the script knows of it; names: those that mean
+    the same throughout; unknown_said, unknown_chosen: what was said and chosen, and the script does not know any more.
     """
 
     ready: Prepared
@@ -30,8 +31,24 @@ class Talk(NamedTuple):
     visit: int
     earlier: frozenset[str]
     earlier_bits: int
-    unknown_said: frozenset[str] = frozenset()
-    unknown_chosen: frozenset[str] = frozenset()
+    names: Mapping[str, Value]
+    unknown_said: frozenset[str]
+    unknown_chosen: frozenset[str]
+
+    @staticmethod
+    def about(
+        script: Script,
+        item: str,
+        seed: int,
+        visit: int,
+        earlier: frozenset[str],
+        unknown_said: frozenset[str] = frozenset(),
+        unknown_chosen: frozenset[str] = frozenset(),
+    ) -> Talk:
+        """A talk about an item of a script."""
+        names: dict[str, Value] = {"item": item, "visit": float(visit)}
+        earlier_bits = bits_of(script.bits.seen, earlier)
+        return Talk(prepared(script, item), seed, visit, earlier, earlier_bits, names, unknown_said, unknown_chosen)
 
 
 Counts = tuple[Mapping[str, int], Mapping[str, int]]
@@ -97,8 +114,8 @@ class StoryState(NamedTuple):
     """One talk between two steps, of one script: what a save holds (``game.story.state``).
 
     ``counter`` is the position in the stream of chance ``seed``; ``turn`` counts the waits; returns: nodes to come back
-    to, innermost last, ``after:NODE`` meaning the way on from NODE; laid: the choices on the table, each with its
-    wording.
+    to, innermost last, ``after:NODE`` meaning the way on from NODE; past: the bits of what was said, chosen and passed;
+    laid: the choices on the table, each with its wording.
     """
 
     talk: Talk
@@ -108,9 +125,7 @@ class StoryState(NamedTuple):
     counter: int
     turn: int
     returns: tuple[str, ...]
-    said_bits: int
-    chosen_bits: int
-    passed_bits: int
+    past: int
     variables: Mapping[str, Value]
     laid: Laid
     log: Log
@@ -161,12 +176,12 @@ class StoryState(NamedTuple):
     @property
     def said(self) -> frozenset[str]:
         """The ids of the lines said in this talk, the player's own among them."""
-        return self._ids(self.said_bits) | self.talk.unknown_said
+        return self.script.bits.ids(self.script.bits.lines, self.past) | self.talk.unknown_said
 
     @property
     def chosen(self) -> frozenset[str]:
         """The ids of the choices taken in this talk."""
-        return self._ids(self.chosen_bits) | self.talk.unknown_chosen
+        return self.script.bits.ids(self.script.bits.choices, self.past) | self.talk.unknown_chosen
 
     @property
     def heard(self) -> Mapping[str, int]:
@@ -182,11 +197,3 @@ class StoryState(NamedTuple):
     def last_lines(self) -> tuple[str, ...]:
         """The ids of the lines of the last step."""
         return self.log.last_lines
-
-    def _ids(self, bits: int) -> frozenset[str]:
-        names, found = self.script.ids, []
-        while bits:
-            low = bits & -bits
-            found.append(names[low.bit_length() - 1])
-            bits ^= low
-        return frozenset(found)

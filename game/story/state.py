@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from game.core.errors import BadInput, Where
+from game.story.bits import bits_of
 from game.story.model import Script
-from game.story.prepared import prepared
 from game.story.standing import Log, StoryState, Talk
 from game.story.vocabulary import OUTCOMES, Value
 
@@ -56,8 +56,8 @@ def begin(
         raise BadInput("item", expected=" | ".join(script.items), seen=item)
     visits, seen, kept = (0, _NOTHING, {}) if memory is None else (memory.visits, memory.seen, memory.variables)
     variables = _variables(script, {**kept, **(afternoon or {})}, scopes=("stall", "afternoon"))
-    talk = Talk(prepared(script, item), seed & (_MAX_INT - 1), visits + 1, seen, _bits(script, seen))
-    return StoryState(talk, "", False, None, 0, 0, (), 0, 0, 0, variables, (), Log(talk, None))
+    talk = Talk.about(script, item, seed & (_MAX_INT - 1), visits + 1, seen)
+    return StoryState(talk, "", False, None, 0, 0, (), 0, variables, (), Log(talk, None))
 
 
 def memory_of(script: Script, state: StoryState) -> Memory:
@@ -120,15 +120,9 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
     known = {*script.nodes, *(f"after:{name}" for name in script.nodes)}
     said, chosen, earlier = [frozenset(reader.texts(key)) for key in ("said", "chosen", "earlier")]
     visits = reader.counts("visits")
-    talk = Talk(
-        prepared(script, item),
-        seed=reader.whole("seed"),
-        visit=reader.whole("visit"),
-        earlier=earlier,
-        earlier_bits=_bits(script, earlier),
-        unknown_said=said - script.bits.keys(),
-        unknown_chosen=chosen - script.bits.keys(),
-    )
+    bits = script.bits
+    unknown = said - bits.lines.keys(), chosen - bits.choices.keys()
+    talk = Talk.about(script, item, reader.whole("seed"), reader.whole("visit"), earlier, *unknown)
     state = StoryState(
         talk,
         node=node,
@@ -137,9 +131,7 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
         counter=reader.whole("counter"),
         turn=reader.whole("turn"),
         returns=tuple(name for name in reader.texts("returns") if name in known)[-16:],
-        said_bits=_bits(script, said),
-        chosen_bits=_bits(script, chosen),
-        passed_bits=_bits(script, visits),
+        past=bits_of(bits.lines, said) | bits_of(bits.choices, chosen) | bits_of(bits.nodes, visits),
         variables=_variables(script, reader.values("variables")),
         laid=(),
         log=Log.of(
@@ -161,11 +153,6 @@ def _fitted(script: Script, state: StoryState, offered: Iterable[tuple[str, str]
     here = {choice.id: choice for choice in script.choices_at(script.nodes[state.node])}
     ready = state.talk.ready
     return state._replace(laid=tuple([ready.laid(here[choice], text) for choice, text in offered if choice in here]))
-
-
-def _bits(script: Script, ids: Iterable[str]) -> int:
-    """Those of different ids, as far as the script knows them."""
-    return sum([script.bits.get(name, 0) for name in ids])
 
 
 def _variables(

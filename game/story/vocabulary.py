@@ -100,9 +100,12 @@ class Environment(dict[str, Value]):
 
 def environment(env: Mapping[str, Value]) -> dict[str, Value]:
     """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
+    out = _DEFAULTS.copy()
+    if not env:
+        return out
     if isinstance(env, Environment):
-        return {**_DEFAULTS, **env}
-    out = dict(_DEFAULTS)
+        out.update(env)
+        return out
     for name, value in env.items():
         kind = _KINDS.get(name)
         if kind is None:
@@ -124,5 +127,5 @@ def environment(env: Mapping[str, Value]) -> dict[str, Value]:
     return out
 
 
-_DEFAULTS: Mapping[str, Value] = {name: known.default for name, known in ENV.items()}
+_DEFAULTS: dict[str, Value] = {name: known.default for name, known in ENV.items()}
 _KINDS: Mapping[str, Type] = {name: known.type for name, known in ENV.items()}
