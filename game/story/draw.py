@@ -13,7 +13,7 @@ __all__ = ["draw_choices"]
 def draw_choices(pool: Pool, scope: Scope, past: int, seen: int, seed: int, counter: int) -> list[ReadyChoice]:
     """Choices of different acts, by the numbers of stream ``seed`` from ``counter`` on.
 
-    scope, and the bits of what happened in the talk (past) and ever at the stall (seen), tell which of the pool can be taken now.
+    scope, and the bits of what happened in the talk (past) and ever at the stall (seen), tell which can be taken now.
     The set of acts is drawn from those in which some line is right for at least six of the seven emotions (or for as
     many as the pool allows), so that the offer tells nothing about what is felt. Too few acts in the pool: the rest is
     filled with further choices.

@@ -181,8 +181,8 @@ class ReadyGroup:
 
 class ReadyChoice:
     """A choice in talks about an item. used: its bit, where it is not offered again in the talk; gone: those of its
-    id, where it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item settles;
-    always: nothing can keep it from being taken.
+    id, where it is not offered again at the stall; shown, needs: what must hold; hidden, ruled_out: what the item
+    settles; always: nothing can keep it from being taken.
 
     texts: its wordings, the bits of which are ``mask``; fresh: by the bits of those said, the others, where each of
     them fits at any time (``fits``). way: where it leads whatever holds.
