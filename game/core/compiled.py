@@ -137,7 +137,7 @@ def _entry(store: wasmtime.Store, function: wasmtime.Func) -> Callable[[], None]
     trap = ctypes.POINTER(wasm_trap_t)()
     where = ctypes.byref(trap)
 
-    def enter() -> None:
+    def enter(_kept: wasmtime.Store = store) -> None:  # the context does not keep its store
         nonlocal trap, where
         error = wasmtime_func_call(context, address, None, 0, None, 0, where)
         if trap:

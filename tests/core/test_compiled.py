@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import importlib.util
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -89,6 +90,28 @@ def test_an_array_outlives_its_machine(tmp_path: Path) -> None:
     del machine
     gc.collect()
     assert row.tolist() == [3.0, 4.0, 5.0]
+
+
+def test_a_function_outlives_its_machine(tmp_path: Path) -> None:
+    path = tmp_path / "double.wasm"
+    path.write_bytes(wasmtime.wat2wasm(SOURCE))
+    machine = Machine(path)
+    double, block = machine.function("double", "III"), machine.kept(np.ones(8), np.float32)
+    gone = weakref.ref(machine)
+    del machine
+    gc.collect()
+    assert gone() is None
+    double(8, block.address, block.address)
+    assert block.data.tolist() == [2.0] * 8
+
+
+def test_what_a_function_runs_into_is_told(machine: Machine) -> None:
+    double, block = machine.function("double", "III"), machine.kept(np.ones(8), np.float32)
+    for _ in range(2):
+        with pytest.raises(wasmtime.Trap, match="out of bounds"):
+            double(8, 1 << 31, block.address)
+        double(8, block.address, block.address)
+    assert block.data.tolist() == [4.0] * 8
 
 
 def test_a_module_that_is_missing_or_broken_is_named_in_one_line(tmp_path: Path) -> None:
