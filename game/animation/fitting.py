@@ -30,7 +30,7 @@ from game.animation.reach import LIMB, STRAIGHT, limb_table
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
 
-__all__ = ["NEEDED", "Fitting", "fit_to", "reference_places"]
+__all__ = ["BODY_PART", "FIGURE_JOINT", "FIGURE_LIMB", "FIT", "NEEDED", "Fitting", "fit_to", "reference_places"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -83,9 +83,9 @@ for _array in (_CENTRES, _RADII):
 
 # As in skin/fit.h.
 _REGION = np.dtype([("centre", "<f4", 3), ("radius", "<f4", 3)])
-_PART = np.dtype([("joint", "<i4"), ("reference", _REGION), ("mine", _REGION)])
-_JOINT = np.dtype([("turn", "<i4"), ("parent", "<i4"), ("reference", "<f4", 3), ("mine", "<f4", 3)])
-_LIMB = np.dtype([("joints", "<i4", 4), ("bones", LIMB), ("foot_reference", "<f4", 3), ("foot", "<f4", 3)])
+BODY_PART = np.dtype([("joint", "<i4"), ("reference", _REGION), ("mine", _REGION)])
+FIGURE_JOINT = np.dtype([("turn", "<i4"), ("parent", "<i4"), ("reference", "<f4", 3), ("mine", "<f4", 3)])
+FIGURE_LIMB = np.dtype([("joints", "<i4", 4), ("bones", LIMB), ("foot_reference", "<f4", 3), ("foot", "<f4", 3)])
 _LIMITS = {
     "beside_body": (_FAR, _NEAR),
     "low_back": (TABLE_BACK_Z_M + _LOW_BACK_M[0], TABLE_BACK_Z_M + _LOW_BACK_M[1]),
@@ -96,9 +96,10 @@ _LIMITS = {
     "together": (_APART_M, _TOGETHER_M),
 }
 """Measures at which something counts not at all, and at which it counts fully."""
-_FIT = np.dtype(
+FIT = np.dtype(
     [
-        ("joint", _JOINT, len(figure.FIGURE)), ("limb", _LIMB, figure.ENDS.shape[1]), ("part", _PART, len(REGIONS)),
+        ("joint", FIGURE_JOINT, len(figure.FIGURE)), ("limb", FIGURE_LIMB, figure.ENDS.shape[1]),
+        ("part", BODY_PART, len(REGIONS)),
         ("hips_reference", "<f4", 3), ("hips", "<f4", 3), ("palm", "<f4", (2, 3)),
         ("leg", "<f4"), ("hand", "<f4"), ("arm", "<f4", 2), ("table_m", "<f4"), ("clear", "<f4"), ("middle", "<f4"),
         *((name, "<f4", 2) for name in _LIMITS),
@@ -132,7 +133,7 @@ class Fitting:
 
     def table(self) -> NDArray[np.void]:
         """(1,) Fit of skin/fit.h."""
-        fit = np.zeros(1, dtype=_FIT)
+        fit = np.zeros(1, dtype=FIT)
         joint = fit[0]["joint"]
         joint["turn"], joint["parent"] = figure.FIGURE, figure.PARENTS
         joint["reference"], joint["mine"] = REFERENCE.rest_translation[figure.FIGURE], self.rest[figure.FIGURE]

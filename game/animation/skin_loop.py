@@ -13,7 +13,7 @@ from game.animation.pose import Pose
 from game.core.compiled import Block, Machine
 from game.core.humanoid import REFERENCE
 
-__all__ = ["EYES", "FOLD", "JOINT", "SPRUNG", "Columns", "SkinLoop", "SkinTables"]
+__all__ = ["EYES", "FOLD", "JOINT", "RIG", "ROOM_BYTES", "SPRUNG", "Columns", "SkinLoop", "SkinTables"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]
@@ -26,7 +26,7 @@ JOINT = np.dtype([("parent", "<i4"), ("source", "<i4"), ("offset", "<f4", 3)])
 FOLD = np.dtype([("bone", "<i4"), ("above", "<i4"), ("below", "<i4")])
 EYES = np.dtype([("yaw", "<f4", (2, 2)), ("pitch", "<f4", 2)])
 SPRUNG = np.dtype([("joint", "<i4"), ("first", "<i4"), ("pieces", "<i4")])
-_RIG = np.dtype(
+RIG = np.dtype(
     [
         ("joints", "<i4"), ("joint", "<u4"), ("hips", "<i4"), ("hips_rest", "<f4", 3), ("reference", "<i4"),
         ("folds", "<i4"), ("fold", "<u4"), ("tips", "<i4"), ("tip", "<u4"), ("tip_share", "<f4"), ("eyes", "<u4"),
@@ -36,7 +36,17 @@ _RIG = np.dtype(
         ("turn", "<u4"), ("model", "<u4"), ("pull", "<u4"), ("capsule", "<u4"),
     ]
 )  # fmt: skip
-_PULL_BYTES, _CAPSULE_BYTES = 8, 28
+_COUNTS = {
+    "joints": "joint",
+    "folds": "fold",
+    "tips": "tip",
+    "twists": "hand",
+    "sprung": "spring",
+    "pieces": "piece",
+    "colliders": "collider",
+}
+ROOM_BYTES = {"turn": 16, "model": 64, "pull": 8, "capsule": 28}
+"""Sizes of Quat, Mat4, Pull and Capsule, in which the compiled side works."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,22 +99,20 @@ class SkinLoop:
         self._kept: list[Block] = []
         self._pieces = len(tables.piece)
         turns = len(REFERENCE) + len(tables.tip) + 2 + len(tables.hand)
-        rig = np.zeros((), dtype=_RIG)
+        rig = np.zeros((), dtype=RIG)
         for name in ("joint", "fold", "tip", "eyes", "hand", "fit", "spring", "piece", "collider", "met"):
             table = getattr(tables, name)
             rig[name] = self._keep(table, table.dtype if table.dtype.names else np.int32) if len(table) else 0
-        for count, name in (("joints", "joint"), ("folds", "fold"), ("tips", "tip"), ("twists", "hand")):
-            rig[count] = len(getattr(tables, name))
-        for count, name in (("sprung", "spring"), ("pieces", "piece"), ("colliders", "collider")):
-            rig[count] = len(getattr(tables, name))
+        for number, name in _COUNTS.items():
+            rig[number] = len(getattr(tables, name))
         for name in ("hips", "hips_rest", "tip_share", "twist_share", "most_twist"):
             rig[name] = getattr(tables, name)
         rig["reference"] = len(REFERENCE)
-        rig["turn"] = self._more(16 * turns)
-        rig["model"] = self._more(64 * len(tables.joint))
-        rig["pull"] = self._more(_PULL_BYTES * len(tables.piece))
-        rig["capsule"] = self._more(_CAPSULE_BYTES * len(tables.collider))
-        self._rig = self._keep(rig, _RIG)
+        rooms = zip(ROOM_BYTES.items(), (turns, *map(len, (tables.joint, tables.piece, tables.collider))), strict=True)
+        for (name, size), count in rooms:
+            self._kept.append(machine.block(size * count, np.uint8))
+            rig[name] = self._kept[-1].address
+        self._rig = self._keep(rig, RIG)
         self._room = _Room(machine, 1, self._pieces)
 
     def columns(self, joint: Ints, bind: Floats) -> Columns:
@@ -144,8 +152,4 @@ class SkinLoop:
 
     def _keep(self, array: NDArray[Any], dtype: Any) -> int:
         self._kept.append(self._machine.kept(array, dtype))
-        return self._kept[-1].address
-
-    def _more(self, size: int) -> int:
-        self._kept.append(self._machine.block(size, np.uint8))
         return self._kept[-1].address

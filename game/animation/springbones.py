@@ -17,7 +17,7 @@ from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.skeleton import Skeleton
 
-__all__ = ["SpringChain", "SpringCollider", "SpringSet", "SpringState", "build_springs"]
+__all__ = ["COLLIDER", "PIECE", "SpringChain", "SpringCollider", "SpringSet", "SpringState", "build_springs"]
 
 Floats = NDArray[np.floating[Any]]
 Ints = NDArray[np.intp]

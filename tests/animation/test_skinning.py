@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from game.animation import Pose, Rig, SpringChain, SpringCollider
+from game.animation import Pose, Rig, SpringChain, SpringCollider, skin_loop
+from game.animation.fitting import BODY_PART, FIGURE_JOINT, FIGURE_LIMB, FIT
+from game.animation.skin_loop import EYES, FOLD, JOINT, RIG, SPRUNG
+from game.animation.springbones import COLLIDER, PIECE
 from game.core import quaternion as quat
+from game.core.compiled import Machine
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
 
@@ -80,6 +86,19 @@ def make_rig(
         chains=(chain,) if springs else (),
         colliders=balls if springs and colliders else (),
     )
+
+
+def test_both_sides_mean_the_same_structs() -> None:
+    machine = Machine(Path(skin_loop.__file__).with_name("skin.wasm"))
+    count, told = machine.block(1, np.uint32), machine.block(200, np.uint32)
+    machine.function("layout", "II")(count.address, told.address)
+    wanted: list[int] = []
+    for struct in (JOINT, FOLD, EYES, SPRUNG, PIECE, COLLIDER, RIG, FIGURE_JOINT, FIGURE_LIMB, BODY_PART, FIT):
+        assert struct.fields is not None
+        wanted += [struct.itemsize, *(field[1] for field in struct.fields.values())]
+    room = skin_loop.ROOM_BYTES
+    wanted += [2 * 3 * 4, room["pull"], room["capsule"], room["turn"], room["model"]]
+    assert told.data[: int(count.data[0])].tolist() == wanted
 
 
 def test_skin_matrices_agree_with_plain_kinematics() -> None:

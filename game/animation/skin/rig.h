@@ -41,6 +41,18 @@ typedef struct {
     float radius_m;
 } Collider;
 
+// What a step does to a piece.
+typedef struct {
+    float kept_s;  // of its speed: metres per metre per second
+    float force;   // metres per unit of stiffness and gravity
+} Pull;
+
+// A collider in model space.
+typedef struct {
+    Vec3 start, way;
+    float square;  // of the way's length
+} Capsule;
+
 typedef struct Fit Fit;
 
 typedef struct {
@@ -70,8 +82,8 @@ typedef struct {
     // Room to work in.
     Quat *turn;
     Mat4 *model;
-    struct Pull *pull;
-    struct Capsule *capsule;
+    Pull *pull;
+    Capsule *capsule;
 } Rig;
 
 // fit.c: the pose's rotations and root, in place, from the reference to this body.

@@ -4,18 +4,6 @@
 static const int PASSES = 3;  // a piece leaves its colliders one after the other, deepest first, so often at most
 static const float DEEP_M = 1e-5f;
 
-// What a step of this length does to a piece.
-struct Pull {
-    float kept_s;  // of its speed: metres per metre per second
-    float force;   // metres per unit of stiffness and gravity
-};
-
-// A collider in model space.
-struct Capsule {
-    Vec3 start, way;
-    float square;  // of the way's length
-};
-
 void prepare_springs(const Rig *rig, float dt_s) {
     // VRM's step is a frame's, of 1/60 s: a longer one has the damping and the terminal velocity of that many.
     float steps = dt_s * 60.0f;
@@ -30,7 +18,7 @@ static void place_capsules(const Rig *rig) {
     for (int i = 0; i < rig->colliders; i++) {
         const Collider *collider = &rig->collider[i];
         const Mat4 *model = &rig->model[collider->joint];
-        struct Capsule *capsule = &rig->capsule[i];
+        Capsule *capsule = &rig->capsule[i];
         capsule->start = transform(model, collider->start);
         capsule->way = sub(transform(model, add(collider->start, collider->way)), capsule->start);
         capsule->square = most(dot(capsule->way, capsule->way), 1e-12f);
@@ -61,7 +49,7 @@ static Vec3 leave(const Rig *rig, const Piece *piece, Vec3 head, Vec3 tail) {
         Vec3 away = {0, 0, 0};
         for (int i = 0; i < piece->colliders; i++) {
             int at = rig->met[piece->first_collider + i];
-            const struct Capsule *capsule = &rig->capsule[at];
+            const Capsule *capsule = &rig->capsule[at];
             Vec3 out = sub(tail, capsule->start);
             float along = clamp(dot(out, capsule->way) / capsule->square, 0, 1);
             out = sub(out, scale(capsule->way, along));
@@ -86,7 +74,7 @@ static Quat between(Vec3 a, Vec3 b) {
 }
 
 // Where a piece has swung to. before: none at first.
-static Swing swing(const Rig *rig, const Piece *piece, const struct Pull *pull, const Swing *before, Vec3 head,
+static Swing swing(const Rig *rig, const Piece *piece, const Pull *pull, const Swing *before, Vec3 head,
                    Vec3 axis, float dt_s) {
     Vec3 rest = add(head, scale(axis, piece->length_m)), still = {0, 0, 0};
     if (!before)
