@@ -82,10 +82,9 @@ def _measure(planner: Planner, n: int, seed: int, how: str) -> list[Row]:
         state, _ = planner.advance(state, signal, spend=n > 1)  # a hero's past is kept, a crowd's is not
         times.append(time.perf_counter_ns() - begin)
     settled = np.array(times[len(times) // 10 :]) / n / 1000.0
-    everyone, now = np.arange(n), ticks * _TICK_S
-    signal = PlannerSignal(emotion, words, now)
+    everyone, signal = np.arange(n), PlannerSignal(emotion, words, ticks * _TICK_S)
     repeats = int(np.clip(20_000 // n, 5, 500))
-    judged = _times(lambda: planner.judge(state, everyone, signal, spend=True), repeats) / n
+    judged = _times(lambda: planner.weigh(state, signal, everyone), repeats) / n
     floor = float(np.median(_times(_floor(rng, n), repeats))) / n
     who = "1 character" if n == 1 else f"{n} characters"
     wanted = "<= 18 µs" if n == 1 else "<= 0.8 µs"

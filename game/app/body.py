@@ -1,8 +1,8 @@
 """Autoplay's eye on the body: which units were on stage between decisions, and why each began.
 
 The bodies of many talks live side by side, with the step's own functions and at its rate, but not in step with each
-other: each goes from one moment at which the planner may decide anew to its next one (game.app.body_ahead), and all
-are judged there in the same few array operations. The result is what ``step`` gives, talk by talk.
+other: between two lines of its talk each goes through its ticks at one go (game.app.body_ahead, Planner.follow). The
+result is what ``step`` gives, talk by talk.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from game.app.performance import factors_of, played_span
 from game.app.step import PEAK_S, StepAssets, line_cues, reaction_to, targets_of, timed_line
 from game.app.talk import TalkAssets, TalkState
 from game.app.world import TICK_S
-from game.embos import Planner, PlannerSignal, PlannerState, greet, habit_of
+from game.embos import Planner, PlannerState, Told, greet, habit_of
 from game.embos.draws import character_keys
 from game.story import Spoken
 
@@ -41,8 +41,6 @@ MAX_TICKS = 3000
 """A beat that is longer than this is broken off."""
 CROWDED = 0.8
 """Where fewer than this share of the bodies still have a talk, the others are left out."""
-BUSY = 0.4
-"""As long as more than this share of them have something to decide ahead, the others wait to be looked after."""
 TEXT_SPEED, LANGUAGE = "fast", "en"
 SEEN: dict[Mode, tuple[str, ...]] = {
     "full": ("posture", "gesture", "mannerism"), "body": ("posture", "gesture", "mannerism"),
@@ -115,7 +113,7 @@ class BodyObserver:
 class _Bodies:
     """N talks, each at a tick of its own. All arrays have N rows; Python looks at a row where a line begins or ends.
 
-    tick: where the ticks ahead begin; due_s: when the present line has been heard out, −inf: one waits to begin;
+    tick: the next one; due_s: when the present line has been heard out, −inf: one waits to begin;
     speaks, over_tick: ticks at which that is so, and at which the player has looked long enough; over: their talk is.
     """
 
@@ -131,7 +129,7 @@ class _Bodies:
         self.state: PlannerState = self.planner.start_keyed(np.concatenate(keys))
         self.habit = habit_of(self.planner, person.habit_units, person.habit_rate)
         self.state = greet(self.state, self.habit, 0.0)
-        self.ahead = Ahead.start(n, self.planner, person)
+        self.ahead = Ahead.start(n, person)
         self.tick = np.zeros(n, dtype=np.int64)
         self.due_s = np.full(n, np.inf)
         self.speaks, self.over_tick = np.full(n, NEVER), np.zeros(n, dtype=np.int64)
@@ -144,43 +142,26 @@ class _Bodies:
 
     def run(self) -> list[list[Watched]]:
         """Until every talk has had its last beat."""
-        self._look_after(np.arange(len(self.actors)))
         while self.actors:
-            busy = self.ahead.busy()
-            if busy.size > BUSY * len(self.actors):
-                self._decide(busy)
-            else:
-                self._look_after((~self.ahead.is_busy() & ~self.over).nonzero()[0])
+            due = self.over_tick <= self.tick
+            for row in (due & ~self.over).nonzero()[0].tolist():
+                self._next_beat(row)
+            self._speak(((self.speaks <= self.tick) & ~self.over).nonzero()[0])
+            live = (~self.over).nonzero()[0]
+            if live.size:
+                self._play(live)
+            if live.size < CROWDED * len(self.actors):
+                self._close_ranks(live)
         return [actor.watched for actor in self.talks]
 
-    def _decide(self, rows: Ints) -> None:
-        """Each of the rows goes on to the next tick ahead in which its planner may decide anew, and decides."""
-        at = self.ahead.go_on(rows, self.state)
-        early = self.fresh[rows] & (at != 0)
-        for row in rows[early].tolist():
-            self._note_standing(row)
-        rows, at = rows[at >= 0], at[at >= 0]
-        if not rows.size:
-            return
-        signal = self.ahead.signal(rows, at, self.habit)
-        # Why something begins is told from the state before it.
-        before = self.state.of(rows) if self.observer.explain else None
-        self.state = self.planner.judge(self.state, rows, signal, TICK_S, spend=True)
-        self._note(rows, before, signal)
-
-    def _look_after(self, rows: Ints) -> None:
-        """Lines and beats of the rows whose ticks ahead are through, then the next ticks ahead."""
-        self.tick[rows] += self.ahead.length[rows]
-        for row in rows[self.over_tick[rows] <= self.tick[rows]].tolist():
-            self._next_beat(row)
-        self._speak(rows[(self.speaks[rows] <= self.tick[rows]) & ~self.over[rows]])
-        rows = rows[~self.over[rows]]
-        if rows.size:
-            left = np.minimum(self.speaks[rows], self.over_tick[rows]) - self.tick[rows]
-            self.ahead.look(rows, self.tick[rows], np.minimum(left, TICKS))
-        live = (~self.over).nonzero()[0]
-        if live.size < CROWDED * len(self.actors):
-            self._close_ranks(live)
+    def _play(self, rows: Ints) -> None:
+        """The rows go through the ticks up to what Python has to look after next, or some way towards it."""
+        left = np.minimum(self.speaks[rows], self.over_tick[rows]) - self.tick[rows]
+        length = np.minimum(left, TICKS)
+        course = self.ahead.look(rows, self.tick[rows], length, self.fresh[rows], self.habit)
+        for told in self.planner.follow(self.state, rows, course, TICK_S, before=self.observer.explain):
+            self._note(rows, told)
+        self.tick[rows] += length
 
     def _close_ranks(self, live: Ints) -> None:
         """Bodies whose talk is over leave; the others go on as before."""
@@ -246,50 +227,42 @@ class _Bodies:
         self.ahead.say(row, None)
         self.due_s[row], self.speaks[row] = np.inf, NEVER
         self.over_tick[row] = min(int(self.tick[row]) + THINKING_TICKS, actor.began + MAX_TICKS)
-        self._see(row, self.layers)
+        self._see(row, self.state.decisions.unit[row].tolist(), self.layers)
 
-    def _see(self, row: int, layers: Sequence[int]) -> None:
-        """What is on stage in these layers is seen in the present beat."""
-        watched, units = self.actors[row].watched[-1], self.state.decisions.unit[row].tolist()
+    def _see(self, row: int, units: Sequence[int], layers: Sequence[int]) -> None:
+        """What is on stage in these layers is seen in the present beat. units: (L,) on stage."""
+        watched, quiet = self.actors[row].watched[-1], self.due_s[row] == np.inf
         for at in layers:
             name = self.names[units[at]]
             if name is not None:
                 watched.units[name] = None
-                if self.due_s[row] == np.inf:
+                if quiet:
                     watched.quiet[name] = None
 
-    def _note_standing(self, row: int) -> None:
-        """A beat's first tick in which nothing new comes on stage."""
-        self.fresh[row] = False
-        self._see(row, self.layers)
-
-    def _note(self, rows: Ints, before: PlannerState | None, signal: PlannerSignal) -> None:
-        """Who came on stage, and why."""
-        decisions = self.state.decisions
-        new = decisions.started[rows] & self.seen[decisions.unit[rows], np.arange(decisions.unit.shape[1])]
+    def _note(self, rows: Ints, told: Told) -> None:
+        """Who came on stage, and why. In a beat's first tick all are seen who are on stage."""
+        decisions = told.decisions
+        new = decisions.started & self.seen[decisions.unit, np.arange(decisions.unit.shape[1])]
         some = new.any(axis=1)
-        noted = (some | self.fresh[rows]).nonzero()[0]
-        for at in noted.tolist():
-            row = int(rows[at])
-            if self.fresh[row]:
-                self._note_standing(row)
-            else:
-                self._see(row, new[at].nonzero()[0].tolist())
-        if before is None or not np.count_nonzero(some):
+        which, units, fresh = rows[told.row], decisions.unit.tolist(), self.fresh
+        for at in (some | fresh[which]).nonzero()[0].tolist():
+            row = int(which[at])
+            self._see(row, units[at], self.layers if fresh[row] else new[at].nonzero()[0].tolist())
+            fresh[row] = False
+        if not self.observer.explain or not np.count_nonzero(some):
             return
         who = some.nonzero()[0]
-        reasons = self.planner.explain_chosen(before, signal, who)
-        library, time_s = self.planner.library, np.asarray(signal.time_s)
+        reasons = self.planner.explain_chosen(PlannerState(told.before, -np.inf, True), told.signal, who)
+        library, time_s = self.planner.library, np.asarray(told.signal.time_s)
         for place, of in zip(who.tolist(), reasons, strict=True):
-            row = int(rows[place])
             for at in new[place].nonzero()[0].tolist():
-                self.actors[row].watched[-1].starts.append(
+                self.actors[int(which[place])].watched[-1].starts.append(
                     {
                         "time_s": round(float(time_s[place]), 3),
                         "layer": of[at].layer,
                         "unit": of[at].name,
                         "factors": factors_of(of[at]),
                         "reason": of[at].reason,
-                        "source": played_span(library, decisions, row, at),
+                        "source": played_span(library, decisions, place, at),
                     }
                 )

@@ -8,7 +8,7 @@ from game.embos.habits import check_habit, greet, habit_of
 from game.embos.library import UnitLibrary
 from game.embos.mixing import mix, mix_weights
 from game.embos.planner import Planner
-from game.embos.planner_state import TICK_S, Decisions, Habit, PlannerSignal, PlannerState
+from game.embos.planner_state import TICK_S, Course, Decisions, Habit, PlannerSignal, PlannerState, Told
 from game.embos.stress import StressRule, stressed_moments
 from game.embos.units import LAYERS, LAYERS_WITH_REST, MotionUnit, Variant, rest_unit
 
@@ -18,6 +18,7 @@ __all__ = [
     "TICK_S",
     "Candidate",
     "ClipBank",
+    "Course",
     "Decisions",
     "GestureCues",
     "Habit",
@@ -29,6 +30,7 @@ __all__ = [
     "PlannerState",
     "StressRule",
     "TakeClip",
+    "Told",
     "UnitLibrary",
     "Variant",
     "beat_columns",

@@ -10,6 +10,7 @@ Who is due and what is chosen is worked out one character after the other in com
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TypeVar
 
 import numpy as np
@@ -21,7 +22,7 @@ from game.embos.draws import character_keys
 from game.embos.explain import Candidate, explain, explain_chosen
 from game.embos.judging import Judge
 from game.embos.library import UnitLibrary
-from game.embos.planner_state import TICK_S, Decisions, Factors, PlannerSignal, PlannerState
+from game.embos.planner_state import TICK_S, Course, Decisions, Factors, PlannerSignal, PlannerState, Told
 from game.embos.tables import PlannerTables, build_tables
 
 __all__ = ["Planner"]
@@ -70,15 +71,15 @@ class Planner:
             state = self._judge.advance(state if spend else state.copied(), signal, dt_s)
         return state, state.decisions
 
-    def judge(
-        self, state: PlannerState, rows: Ints, signal: PlannerSignal, dt_s: float = TICK_S, *, spend: bool = False
-    ) -> PlannerState:
-        """Eq. 1 for the characters ``rows`` (R,); the signal has R rows and may bring each a time of its own.
+    def follow(
+        self, state: PlannerState, rows: Ints, course: Course, dt_s: float = TICK_S, *, before: bool = False
+    ) -> Iterator[Told]:
+        """Many ticks of the characters ``rows`` (R,), each at times of its own, told piece by piece.
 
-        Only these stand in ``decisions.started``. Who has nothing to decide may be judged too and stays as they are.
+        The state is spent: its records are written to, and all must be told before it is used again.
         """
-        self._check(state, signal, len(rows))
-        return self._judge.judge(state if spend else state.copied(), rows, signal, dt_s)
+        self._own(state)
+        yield from self._judge.follow(state, rows, course, dt_s, before)
 
     def weigh(
         self, state: PlannerState, signal: PlannerSignal, characters: Ints, dt_s: float = TICK_S
@@ -100,6 +101,9 @@ class Planner:
                 expected=f"emotion {(count, 7)} and words {wanted}",
                 seen=f"{signal.emotion.shape} and {signal.words.shape}",
             )
+        self._own(state)
+
+    def _own(self, state: PlannerState) -> None:
         if state.characters.kind is not self._judge.kind:
             raise BadInput("planner state", expected="one that this planner started", seen="another planner's")
 

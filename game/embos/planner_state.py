@@ -11,7 +11,18 @@ from numpy.typing import NDArray
 
 from game.core.compiled import Block, Machine
 
-__all__ = ["TICK_S", "CharacterKind", "Characters", "Decisions", "Factors", "Habit", "PlannerSignal", "PlannerState"]
+__all__ = [
+    "TICK_S",
+    "CharacterKind",
+    "Characters",
+    "Course",
+    "Decisions",
+    "Factors",
+    "Habit",
+    "PlannerSignal",
+    "PlannerState",
+    "Told",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -239,3 +250,35 @@ class Factors:
     score: Floats
     chosen: Ints
     within: Bools
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Ticks of R characters, each on a clock of its own, where all that reaches them is known beforehand.
+
+    emotion: (R, T, 7) felt in the ticks; tick: (R,) number of the first, length: (R,) how many there are, at most T.
+    cue, cue_s: (R, C) columns of library.gestures and moments of the words that are said, inf where there are no
+    more. told: (R,) bool, of whom the first tick is told whatever happens in it. habit: what they do anyway.
+    """
+
+    emotion: Floats
+    tick: Ints
+    length: Ints
+    cue: Ints
+    cue_s: Floats
+    told: Bools
+    habit: Habit | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """E ticks in which somebody started something, or that were to be told of; one character's stand in order.
+
+    row: (E,) of the course. decisions: of the E. signal: what the tick brought, to each at its own time. before: the
+    characters as they were, where they were to be kept; whoever started nothing is undefined.
+    """
+
+    row: Ints
+    decisions: Decisions
+    signal: PlannerSignal
+    before: Characters

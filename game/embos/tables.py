@@ -19,6 +19,7 @@ Ints = NDArray[np.intp]
 
 MOST_UNITS = 1024
 """In a layer (plan.h)."""
+_ROUNDING_S = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,8 @@ class PlannerTables:
     follow: (P + 1, M) ω_c from a slot to its layer's slots; row P is "nothing ran yet". blocks: (L, P + 1, M) ω_l of a
     layer's slots below a running slot. intensity, exists: (P, 7). timing_s: (P, 3, 7) L_d, L_w and seconds from start
     to stroke. sigma: (P,) of the random factors' logarithm. constant_state: (P,) φ_state of rest slots, 0 elsewhere,
-    −1 in empty ones. gestures: consecutive slots of the gestures proper. count: (L,) units that take part in the
+    −1 in empty ones. gestures: consecutive slots of the gestures proper; leads_s: (G, 2) least and most seconds from
+    start to stroke of each, whatever is felt, and a little more. count: (L,) units that take part in the
     ranking; places: (P,) where they stand in their layers, those first. minimum: (P,) φ_time while waiting; reach:
     (L,) the share of a score that a unit's own must have while it waits to come up to it afterwards. least_s: (P,).
     settled: slots whose units count as having run before. initial: (L,) slots.
@@ -47,6 +49,7 @@ class PlannerTables:
     timing_s: Floats
     sigma: Floats
     constant_state: Floats
+    leads_s: Floats
     gestures: slice
     gesture_layer: int
     count: Ints
@@ -120,6 +123,7 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         timing_s=np.where(used[:, None, None], timing_s[unit], 0.0),
         sigma=np.sqrt(np.log1p((np.where(used, library.duration_cv[unit], 0.0) * config.spread) ** 2)),
         constant_state=np.where(rest, threshold, np.where(used, 0.0, -1.0)),
+        leads_s=_leads_s(library),
         gestures=slice(int(gestures[0]), int(gestures[-1]) + 1) if len(gestures) else slice(0, 0),
         gesture_layer=config.layers.index("gesture"),
         places=np.argsort(~real.reshape(layers, width), axis=1, kind="stable").reshape(-1),
@@ -136,3 +140,11 @@ def build_tables(library: UnitLibrary, config: PlannerConfig) -> PlannerTables:
         if isinstance(value, np.ndarray):
             value.setflags(write=False)
     return tables
+
+
+def _leads_s(library: UnitLibrary) -> Floats:
+    known, offset_s = library.exists[library.gestures], library.stroke_offset_s[library.gestures]
+    least = np.where(known, offset_s, np.inf).min(axis=1)
+    most = np.where(known, offset_s, -np.inf).max(axis=1)
+    some = known.any(axis=1)
+    return np.stack([np.where(some, least, 0.0) - _ROUNDING_S, np.where(some, most, 0.0) + _ROUNDING_S], axis=1)

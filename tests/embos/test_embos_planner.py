@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from game.core import BadInput, with_neutral
-from game.embos import LAYERS, MotionUnit, Planner, PlannerConfig, PlannerSignal, PlannerState, UnitLibrary
+from game.embos import (
+    LAYERS,
+    Course,
+    GestureCues,
+    MotionUnit,
+    Planner,
+    PlannerConfig,
+    PlannerSignal,
+    PlannerState,
+    UnitLibrary,
+)
 from tests.embos import plain_scores
 
 DT = 1.0 / 30.0
@@ -85,40 +96,68 @@ def test_waiting_for_events_gives_what_judging_every_tick_gives(made_up: Callabl
             np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
-def test_clocks_of_their_own_and_a_spent_state_change_nothing(made_up: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("pace", [1, 7, 24])
+def test_clocks_of_their_own_tell_what_ticking_together_shows(pace: int, made_up: Callable[..., Any]) -> None:
     library = made_up(4, with_parts=True).library
-    planner, n, late = Planner(library), 5, 37  # the last two characters are 37 ticks behind the others
-    signals = wander(n, library, 300)
-    state, together = planner.start(n, 6), []
-    for signal in signals:
-        state, decisions = planner.advance(state, signal)
-        together.append(decisions)
-    behind, rows = np.array([0, 0, 0, late, late]), np.arange(n)
-    state = planner.start(n, 6).copied()
-    for tick in range(300):
-        at = tick - behind
-        due = [
-            i
-            for i in rows[at >= 0].tolist()
-            if tick == behind[i]
-            or np.abs(signals[at[i]].emotion[i] - state.emotion[i]).max() > planner.config.tolerance
-            or state.next_s[i] < planner.moment(at[i] * DT, DT)
-            or (signals[at[i]].words[i] != signals[at[i] - 1].words[i]).any()
-        ]
-        if due:
-            own = PlannerSignal(
-                np.array([signals[at[i]].emotion[i] for i in due]),
-                np.array([signals[at[i]].words[i] for i in due]),
-                np.array([at[i] * DT for i in due]),
-            )
-            before = state
-            state = planner.judge(state, np.array(due), own, DT, spend=True)
-            assert state.characters is before.characters
-        for i in rows[at >= 0]:
-            wanted, seen = together[at[i]], state.decisions
-            np.testing.assert_array_equal(seen.unit[i], wanted.unit[i])
-            np.testing.assert_array_equal(seen.numbers[i], wanted.numbers[i])
-            np.testing.assert_array_equal(seen.started[i] & (i in due), wanted.started[i])
+    planner, n, ticks = Planner(library), 5, 300
+    rng = np.random.default_rng(6)
+    gestures = len(library.gestures)
+    # Lines: their words' moments; each gesture's window opens earlier by the time it needs to its stroke.
+    cues = [
+        GestureCues(rng.integers(0, gestures, 12), np.sort(rng.uniform(0.0, ticks * DT, 12)), gestures)
+        for _ in range(n)
+    ]
+    emotion = np.stack([signal.emotion for signal in wander(n, library, ticks)], axis=1)
+    state, starts = planner.start(n, 6), []
+    for tick in range(ticks):
+        lead_s = library.stroke_lead_s(emotion[:, tick])
+        words = np.array([cues[i].factors(tick * DT, lead_s[i], planner.config.word_window_s) for i in range(n)])
+        signal = PlannerSignal(emotion[:, tick], words, tick * DT)
+        before = state
+        state, d = planner.advance(state, signal)
+        for i in np.flatnonzero(d.started.any(axis=1)):
+            reasons = planner.explain_chosen(before, signal, np.array([i]))[0]
+            starts.append((i, tick, d.unit[i].tolist(), d.started[i].tolist(), d.numbers[i].tolist(), reasons))
+    assert {library.units[row[2][1]].is_rest for row in starts} == {True, False}, "words were heard"
+    # The last two characters set out later, and each goes through its ticks in stretches of its own.
+    alone, at, told = planner.start(n, 6), np.array([0, 0, 0, -pace, -3 * pace]), []
+    while (at < ticks).any():
+        rows = np.flatnonzero((at >= 0) & (at < ticks))
+        length = np.minimum(np.where(rows == 1, max(pace // 2, 1), pace), ticks - at[rows])
+        course = Course(
+            np.stack([np.resize(emotion[i, at[i] : at[i] + k], (pace, 7)) for i, k in zip(rows, length, strict=True)]),
+            at[rows],
+            length,
+            np.array([cues[i].gesture for i in rows]),
+            np.array([cues[i].time_s for i in rows]),
+            np.zeros(len(rows), dtype=bool),
+        )
+        for piece in planner.follow(alone, rows, course, before=True):
+            d, who = piece.decisions, np.arange(len(piece.row))
+            reasons = planner.explain_chosen(PlannerState(piece.before, -np.inf, True), piece.signal, who)
+            for k, row in enumerate(rows[piece.row]):
+                tick = round(float(np.asarray(piece.signal.time_s)[k]) / DT)
+                told.append((row, tick, d.unit[k].tolist(), d.started[k].tolist(), d.numbers[k].tolist(), reasons[k]))
+        at[rows] += length
+        at[at < 0] += pace
+    assert sorted(told, key=lambda row: row[:2]) == sorted(starts, key=lambda row: row[:2])
+
+
+def test_a_first_tick_is_told_and_many_happenings_come_in_pieces(made_up: Callable[..., Any]) -> None:
+    library = made_up(4).library
+    planner, ticks = Planner(library), 1200
+    emotion = np.repeat(np.eye(7)[:2, None], ticks, axis=1)
+    course = Course(
+        emotion, np.zeros(2, dtype=np.intp), np.full(2, ticks), np.zeros((2, 1), dtype=np.intp),
+        np.full((2, 1), np.inf), np.array([True, True]),
+    )  # fmt: skip
+    state = planner.start(2, 1)
+    pieces = list(planner.follow(state, np.arange(2), course))
+    assert len(pieces) > 1
+    assert state.starts.sum() == sum(int(piece.decisions.started.sum()) for piece in pieces)
+    later = replace(course, tick=course.tick + ticks, length=np.full(2, 1))
+    ((told,),) = ([piece.row.tolist() for piece in planner.follow(state, np.arange(2), later)],)
+    assert told == [0, 1], "though nothing need have started"
 
 
 def test_a_state_is_never_changed_and_can_be_resumed(made_up: Callable[..., Any]) -> None:

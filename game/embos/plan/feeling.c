@@ -73,6 +73,9 @@ static void compute_phi_state(const Tables *t, const double *emotion, double *ph
     }
 }
 
+// Before its first tick.
+bool is_fresh(const Character *c) { return !(c->starts[0] | c->starts[1] | c->starts[2]); }
+
 // φ_state anew where the emotion has moved.
 void feel(const Tables *t, Character *c, const double *emotion, bool looking) {
     if (!looking || apart(emotion, c->emotion) <= t->tolerance) return;
@@ -81,12 +84,12 @@ void feel(const Tables *t, Character *c, const double *emotion, bool looking) {
 }
 
 // Normalised σ_k·Γ_k of eq. 5, radial over the whole space: variant k sits at i_k on axis k and at 0 on the others.
-void mix_weights(const Tables *t, const double *emotion, int64_t slot, double *weights) {
+void mix_weights(const Tables *t, const double *emotion, int64_t slot, double radius, double *weights) {
     const double *intensity = t->intensity + slot * FEELINGS, *exists = t->exists + slot * FEELINGS;
     double nearest = -1e12, sum = 0;
     for (int k = 0; k < FEELINGS; k++) {
         // |i'|² is the same for every k and falls out of the quotient; i_k² − 2·i'_k·i_k is left of the distance.
-        weights[k] = (2 * emotion[k] - intensity[k]) * intensity[k] * (1 / (t->radius * t->radius));
+        weights[k] = (2 * emotion[k] - intensity[k]) * intensity[k] * (1 / (radius * radius));
         if (exists[k]) nearest = larger(nearest, weights[k]);
     }
     for (int k = 0; k < FEELINGS; k++) {
@@ -107,14 +110,14 @@ double mixed(const double *values, const double *weights) {
 // emotion has leapt since, units that have not run yet come sooner: a feeling that strikes shows.
 void settle(const Tables *t, Character *c, double time_s) {
     if (!t->settled_count || apart(c->emotion, c->settled) <= LEAP) return;  // … or has never been settled
-    bool fresh = !(c->starts[0] | c->starts[1] | c->starts[2]);
+    bool fresh = is_fresh(c);
     for (int i = 0; i < t->settled_count; i++) {
         int slot = t->settled[i];
         if (!untried(t, c)[slot]) continue;
         double weights[FEELINGS], period_s[FEELINGS], chance;
         const double *timing_s = t->timing_s + slot * 3 * FEELINGS;
         for (int k = 0; k < FEELINGS; k++) period_s[k] = timing_s[k] + timing_s[FEELINGS + k];  // L_d + L_w
-        mix_weights(t, c->emotion, slot, weights);
+        mix_weights(t, c->emotion, slot, t->radius, weights);
         uniform(c->key, slot, fresh ? -1 : -2, 1, &chance);  // events of their own, before the first start
         double due_s = time_s + chance * mixed(period_s, weights) * (fresh ? 1 : t->eager);
         if (fresh || due_s < wait_s(c)[slot]) wait_s(c)[slot] = due_s;

@@ -71,7 +71,7 @@ static void begin(const Tables *t, Character *c, int layer, int64_t slot, double
     double draw[3], *numbers = c->numbers[layer], *weights = numbers + 4;
     const double *timing_s = t->timing_s + slot * 3 * FEELINGS;
     uniform(c->key, layer, c->starts[layer], 3, draw);
-    mix_weights(t, c->emotion, slot, weights);
+    mix_weights(t, c->emotion, slot, t->radius, weights);
     double duration_s = mixed(timing_s, weights) * spread_factor(t, draw[0], t->sigma[slot]);  // L_d
     double waiting_s = mixed(timing_s + FEELINGS, weights) * spread_factor(t, draw[1], t->sigma[slot]);  // L_w
     numbers[0] = time_s;

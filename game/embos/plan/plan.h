@@ -17,6 +17,7 @@ typedef struct {
     const double *sigma, *constant_state, *least_s, *minimum;  // [P]
     const double *follow;                        // [P + 1][M]
     const double *blocks;                        // [L][P + 1][M]
+    const double *leads_s;                       // [G][2]: least and most from start to stroke
     const double *normal, *share;                // [quantiles] of the normal distribution, and what lies below each
     const int64_t *unit;                         // [P]
     const uint8_t *real;                         // [P]
@@ -63,13 +64,18 @@ typedef struct {
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
-// What a tick brings a character: emotion[7], then words[G]. See the sources.
+// See the sources.
 void uniform(uint64_t key, uint64_t purpose, int64_t event, int count, double *draws);
 double spread_factor(const Tables *t, double draw, double sigma);
-void mix_weights(const Tables *t, const double *emotion, int64_t slot, double *weights);
+void mix_weights(const Tables *t, const double *emotion, int64_t slot, double radius, double *weights);
 double mixed(const double *values, const double *weights);
 double apart(const double *a, const double *b);
+bool is_fresh(const Character *c);
 void feel(const Tables *t, Character *c, const double *emotion, bool looking);
 void settle(const Tables *t, Character *c, double time_s);
 void evaluate(const Tables *t, Character *c, double now_s, const Habit *habit, Factors *f);
 void decide(const Tables *t, Character *c, double time_s, double now_s, Factors *f);
+double moment(const Tables *t, double time_s, double dt_s);
+bool is_due(const Tables *t, Character *c, const double *emotion, const double *said, double time_s, double dt_s);
+void judge_one(const Tables *t, Character *c, const double *emotion, const double *said, double time_s, double dt_s,
+               const Habit *habit, Factors *f);

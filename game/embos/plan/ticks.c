@@ -1,10 +1,10 @@
-// What Python calls: a tick of all characters, or of some of them, or the factors behind it.
+// A tick of all characters, and the factors behind it.
 #include "plan.h"
 
 // Arrays are copied by one instruction.
 #pragma clang attribute push(__attribute__((target("bulk-memory"))), apply_to = function)
 
-// Every function's parameters. signal: for each character judged emotion[7], words[G]; rows, times_s: judge only.
+// Every function's parameters. signal: for each character emotion[7], words[G]; times_s: of each, weigh only.
 typedef struct {
     double time_s, dt_s;
     Habit habit;
@@ -15,13 +15,11 @@ typedef struct {
     Factors *factors;
     double *soonest_s;
     uint32_t *started;
-    const int64_t *rows;
-    uint32_t judged;  // of rows
     const double *times_s;
 } Call;
 
 // Thresholds before this moment count as passed: half a look ahead, so that lengths are right on average.
-static double moment(const Tables *t, double time_s, double dt_s) { return time_s + 0.5 * larger(t->look_s, dt_s); }
+double moment(const Tables *t, double time_s, double dt_s) { return time_s + 0.5 * larger(t->look_s, dt_s); }
 
 // Whether times and emotions are looked at in this tick.
 static bool looks(const Tables *t, double time_s, double dt_s) {
@@ -29,24 +27,29 @@ static bool looks(const Tables *t, double time_s, double dt_s) {
     return floor((time_s + 1e-6) / t->look_s) > floor((time_s - dt_s + 1e-6) / t->look_s);
 }
 
-static bool is_fresh(const Character *c) { return !(c->starts[0] | c->starts[1] | c->starts[2]); }
-
-// Whether a character's decision may change in this tick. said: words have come or gone, come: some have come.
-static bool is_due(const Tables *t, const Character *c, const double *emotion, bool said, bool come, bool looking,
-                   double now_s) {
-    bool passed = c->next_s < now_s;
+// Whether a character's decision may change in this tick. said: [G], noted as the words of the last tick.
+bool is_due(const Tables *t, Character *c, const double *emotion, const double *said, double time_s, double dt_s) {
+    double *before = words(t, c);
+    int differ = 0, come = 0;
+    for (int g = 0; g < t->gestures; g++) {
+        differ |= said[g] != before[g];
+        come |= said[g] > before[g];
+    }
+    if (differ) memcpy(before, said, t->gestures * sizeof *said);
+    bool passed = c->next_s < moment(t, time_s, dt_s), looking = looks(t, time_s, dt_s);
     if (looking ? passed || apart(emotion, c->emotion) > t->tolerance : is_fresh(c)) return true;
     // A word that goes is heard by those whom it may move, or who look at the clock only now and then.
-    return come || (said && (!c->calm || passed));
+    return come || (differ && (!c->calm || passed));
 }
 
-static void judge_one(const Call *call, Character *c, const double *signal, double time_s, Factors *f) {
-    const Tables *t = call->tables;
-    double now_s = moment(t, time_s, call->dt_s);
-    feel(t, c, signal, is_fresh(c) || looks(t, time_s, call->dt_s));
+// Eq. 1 and what follows from it.
+void judge_one(const Tables *t, Character *c, const double *emotion, const double *said, double time_s, double dt_s,
+               const Habit *habit, Factors *f) {
+    double now_s = moment(t, time_s, dt_s);
+    feel(t, c, emotion, is_fresh(c) || looks(t, time_s, dt_s));
     settle(t, c, time_s);
-    memcpy(words(t, c), signal + FEELINGS, t->gestures * sizeof *signal);
-    evaluate(t, c, now_s, &call->habit, f);
+    memcpy(words(t, c), said, t->gestures * sizeof *said);
+    evaluate(t, c, now_s, habit, f);
     decide(t, c, time_s, now_s, f);
 }
 
@@ -65,33 +68,12 @@ static void sum_up(const Call *call) {
 EXPORT(advance) {
     const Call *call = PARAMETERS(Call);
     const Tables *t = call->tables;
-    double now_s = moment(t, call->time_s, call->dt_s);
-    bool looking = looks(t, call->time_s, call->dt_s);
     for (uint32_t row = 0; row < call->count; row++) {
         Character *c = character(t, call->characters, row);
-        const double *signal = call->signal + row * (FEELINGS + t->gestures), *now_said = signal + FEELINGS;
-        double *before = words(t, c);
-        int said = 0, come = 0;
-        for (int g = 0; g < t->gestures; g++) {
-            said |= now_said[g] != before[g];
-            come |= now_said[g] > before[g];
-        }
+        const double *emotion = call->signal + row * (FEELINGS + t->gestures), *said = emotion + FEELINGS;
         memset(c->started, 0, sizeof c->started);
-        if (is_due(t, c, signal, said, come, looking, now_s)) judge_one(call, c, signal, call->time_s, call->factors);
-        else if (said) memcpy(before, now_said, t->gestures * sizeof *before);
-    }
-    sum_up(call);
-}
-
-// Eq. 1 for some characters, each at a time of its own.
-EXPORT(judge) {
-    const Call *call = PARAMETERS(Call);
-    const Tables *t = call->tables;
-    for (uint32_t row = 0; row < call->count; row++)
-        memset(character(t, call->characters, row)->started, 0, LAYERS);
-    for (uint32_t i = 0; i < call->judged; i++) {
-        const double *signal = call->signal + i * (FEELINGS + t->gestures);
-        judge_one(call, character(t, call->characters, call->rows[i]), signal, call->times_s[i], call->factors);
+        if (is_due(t, c, emotion, said, call->time_s, call->dt_s))
+            judge_one(t, c, emotion, said, call->time_s, call->dt_s, &call->habit, call->factors);
     }
     sum_up(call);
 }
@@ -103,10 +85,10 @@ EXPORT(weigh) {
     size_t factors_bytes = sizeof(Factors) + FACTORS * t->slots * sizeof(double);
     for (uint32_t row = 0; row < call->count; row++) {
         Character *c = character(t, call->characters, row);
-        const double *signal = call->signal + row * (FEELINGS + t->gestures);
-        feel(t, c, signal, true);
+        const double *emotion = call->signal + row * (FEELINGS + t->gestures), *said = emotion + FEELINGS;
+        feel(t, c, emotion, true);
         settle(t, c, call->times_s[row]);
-        memcpy(words(t, c), signal + FEELINGS, t->gestures * sizeof *signal);
+        memcpy(words(t, c), said, t->gestures * sizeof *said);
         Factors *f = (Factors *)((uint8_t *)call->factors + row * factors_bytes);
         evaluate(t, c, moment(t, call->times_s[row], call->dt_s), &call->habit, f);
     }
