@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from game.animation import NEEDED, Rig
 from game.app.avatar_look import AvatarLooks
 from game.app.avatar_rig import EYE_HEIGHT_M, avatar_rig, place_avatar
+from game.app.avatar_smile import smile_instead
 from game.core.errors import BadInput, Where
 from game.face import AvatarFace, FaceLeak, FaceParams, FaceSignal, load_rated
 from game.formats import (
@@ -100,6 +101,8 @@ def open_avatar(path: Path, joints: JointMap | None = None, ratings: Path | None
     name = (vrm.name if vrm is not None else "") or path.stem
     model = build_avatar(name, file, geometry, materials, placing.scale)
     expressions = dict(vrm.expressions) if vrm is not None else _morph_expressions(file)
+    smile = smile_instead(model, expressions)
+    told = [f"happy: no smile in it, joy is shown as {smile}"] if smile is not None and rated is None else []
     return Avatar(
         path=path,
         kind=f"VRM {vrm.version}" if vrm is not None else "glTF",
@@ -109,10 +112,10 @@ def open_avatar(path: Path, joints: JointMap | None = None, ratings: Path | None
         expressions=expressions,
         look_at=look_at,
         lift_m=placing.eyes_m - EYE_HEIGHT_M,
-        face=AvatarFace(expressions, look_at, rated),
+        face=AvatarFace(expressions, look_at, rated, smile),
         looks=AvatarLooks(model, tuple(expressions.values())),
         licence=_licence(file, vrm),
-        notes=tuple(_plain(note) for note in (*model.notes, *(vrm.findings if vrm else file.findings))),
+        notes=tuple(_plain(note) for note in (*model.notes, *told, *(vrm.findings if vrm else file.findings))),
     )
 
 

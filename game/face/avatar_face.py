@@ -94,9 +94,10 @@ class AvatarFace:
         expressions: Mapping[str, VrmExpression],
         look_at: VrmLookAt | None = None,
         rated: tuple[Mapping[str, RatedExpression], Floats] | None = None,
+        smile: str | None = None,
     ) -> None:
         """rated: what people saw in the expressions (face rate, face fit) and where the seven emotions lie: chosen by
-        these where they are given."""
+        these where they are given. smile: the expression that shows joy where the file's own does not."""
         self.names = tuple(expressions)
         self.expressions = tuple(expressions.values())
         self._index = {name: i for i, name in enumerate(self.names)}
@@ -108,6 +109,9 @@ class AvatarFace:
         for emotion, parts in emotion_recipes(self.names).items():
             for name, share in parts:
                 self._emotion[EMOTION_INDEX[emotion], self._index[name]] += share
+        if smile is not None:
+            self._emotion[EMOTION_INDEX["joy"]] = 0.0
+            self._emotion[EMOTION_INDEX["joy"], self._index[smile]] = 1.0
         self._relaxed = self._index.get("relaxed")
         self._override = {
             kind: [getattr(e, f"override_{kind}") for e in self.expressions] for kind in ("blink", "look_at", "mouth")

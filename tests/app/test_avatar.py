@@ -6,6 +6,7 @@ import json
 import shutil
 import struct
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,12 @@ import pytest
 
 from game.animation import Pose
 from game.app.avatar import Avatar, open_avatar
+from game.app.avatar_smile import smile_instead
+from game.core.emotion_space import EMOTION_INDEX
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE
+from game.face import FaceSignal
+from game.face.params import face_params
 from game.formats import parse_yaml
 
 REFUSED = {
@@ -230,3 +235,24 @@ def test_missing_bones_are_named(shared_data: Path, tmp_path: Path):
     _rewritten(shared_data / "vrm" / "Godette_vrm_v4.vrm", tmp_path / "lame.vrm", lame)
     with pytest.raises(BadInput, match="leftFoot"):
         open_avatar(tmp_path / "lame.vrm")
+
+
+def test_an_avatar_whose_happy_is_an_oh_smiles_with_the_mouth_that_does(shared_data: Path):
+    """Godette's "Joy" is half an O and a look upward; her U pulls the corners of the mouth up."""
+    avatar = open_avatar(shared_data / "vrm" / "Godette_vrm_v4.vrm")
+    glad = np.zeros(7)
+    glad[EMOTION_INDEX["joy"]] = 0.9
+    names = avatar.face.names
+    weight = avatar.face.weights(FaceSignal(glad), face_params(), np.zeros(6)).weight
+    assert weight[names.index("ou")] > 0.8
+    assert weight[names.index("oh")] == weight[names.index("happy")] == 0.0
+    assert any("joy is shown as ou" in note for note in avatar.notes)
+    # A happy face of its own, or one that smiles, stays.
+    happy = avatar.expressions["happy"]
+    brows = next(bind for bind in avatar.expressions["angry"].morphs if bind[1] == 14)
+    for binds in (avatar.expressions["ou"].morphs, ((0, 5, 0.1), *happy.morphs, *avatar.expressions["ou"].morphs)):
+        assert smile_instead(avatar.model, {**avatar.expressions, "happy": replace(happy, morphs=binds)}) is None
+    assert smile_instead(avatar.model, {**avatar.expressions, "happy": replace(happy, morphs=(brows,))}) == "ou"
+    assert smile_instead(avatar.model, {"happy": happy}) is None, "no mouth that speaks"
+    mouthless = {name: e for name, e in avatar.expressions.items() if name not in ("ou", "ih")}
+    assert smile_instead(avatar.model, mouthless) is None, "nothing of it smiles"
