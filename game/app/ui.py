@@ -164,6 +164,15 @@ class Canvas:
         """The text broken to a width."""
         return self.hud.wrap(text, width * self._k, size * self.text_scale * self._k, font)
 
+    def fitted(self, text: str, width: float, height: float, size: float) -> tuple[list[str], float, float]:
+        """The text broken and shrunk until it fits: its rows, their size, and from one row to the next."""
+        for shrink in (1.0, 0.92, 0.84, 0.76, 0.68, 0.6):
+            rows = self.rows(text, width, size * shrink)
+            step = size * shrink * self.text_scale * 1.27
+            if len(rows) * step <= height + 2:
+                break
+        return rows, size * shrink, step
+
     def paragraph(
         self,
         rect: Rect,
@@ -176,17 +185,13 @@ class Canvas:
     ) -> None:
         """Wrapped text inside a rectangle, shrunk until it fits. ``shown``: only so many characters (typing);
         ``middle``: centred from top to bottom."""
-        for shrink in (1.0, 0.92, 0.84, 0.76, 0.68, 0.6):
-            rows = self.rows(text, rect.w, size * shrink)
-            step = size * shrink * self.text_scale * 1.27
-            if len(rows) * step <= rect.h + 2:
-                break
+        rows, size, step = self.fitted(text, rect.w, rect.h, size)
         y = rect.y + max((rect.h - len(rows) * step) / 2, 0.0) if middle else rect.y
         left = shown
         for i, row in enumerate(rows):
             if left is not None and left <= 0:
                 return
-            self.text(rect.x, y + i * step, row, size * shrink, colour, shown=left, whole=True)
+            self.text(rect.x, y + i * step, row, size, colour, shown=left, whole=True)
             left = None if left is None else left - len(row) - 1
 
     def lines(self, points: Sequence[tuple[float, float]], width: float, colour: Colour) -> None:

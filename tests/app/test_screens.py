@@ -63,6 +63,26 @@ def hear_out(window: Window) -> None:
     raise AssertionError("the lines do not end")
 
 
+def lowest_text(window: Window) -> float:
+    """How far down the talk's words reach in letters twice as large, in both languages; design pixels of 720."""
+    session, hud = window.session, window.renderer.hud
+    settings, strings, write = session.settings, session.strings, hud.text
+    reach: list[float] = []
+
+    def text(words: str, x: float, y: float, **more: object) -> object:
+        reach.append(y + hud.measure(words, more["size"], more.get("role", "body"))[1])
+        return write(words, x, y, **more)
+
+    session.settings, hud.text = replace(settings, ui_scale=2.0), text
+    for language in ("en", "ja"):
+        session.strings = load_strings(language)
+        window.draw()
+    session.settings, session.strings = settings, strings
+    del hud.text
+    assert len(reach) > 20
+    return max(reach)
+
+
 def test_a_whole_afternoon(window) -> None:
     assert isinstance(window.screen, TitleScreen)
     title = picture(window)
@@ -80,6 +100,7 @@ def test_a_whole_afternoon(window) -> None:
     go(window, key("f3"), seconds=0.0)
     assert np.abs(picture(window) - plain)[:250, :400].mean() > 20
     go(window, key("f1"), key("f2"), key("f3"), seconds=0.0)
+    assert lowest_text(window) < 716, "the keys stay inside in the largest letters"
     window.session.settings = replace(window.session.settings, captions=True)
     assert np.abs(picture(window) - plain)[237:252, 100:300].mean() > 10, "the body in words"
 
