@@ -251,14 +251,14 @@ class TalkScreen:
             canvas.panel(words, fade(PALETTE["shade"], 1.2), radius=12)
             room = Rect(left + 14, y + 54, card_width(canvas) - 28, 36)
             canvas.paragraph(room, self._shown(session, focused), 16, PALETTE["white"], middle=True)
-        # The keys have the room that is left below, and take of it what they need.
+        # The keys have the free that is left below, and take of it what they need.
         top = y + (98.0 if focused is not None else 52.0)
-        wide, room = card_width(canvas) - 24, canvas.height - 16 - 8 - top
-        rows, _, step = canvas.fitted(s("hint_talk"), wide, room, 13)
-        if len(rows) * step <= room + 2:
+        wide, free = card_width(canvas) - 24, canvas.height - 16 - 8 - top
+        rows, _, step = canvas.fitted(s("hint_talk"), wide, free, 13)
+        if len(rows) * step <= free + 2:
             hint = Rect(left, canvas.height - 22 - len(rows) * step, card_width(canvas), len(rows) * step + 8)
             canvas.panel(hint, fade(PALETTE["shade"], 0.8), radius=12)
-            canvas.paragraph(Rect(left + 12, hint.y + 4, wide, room), s("hint_talk"), 13, PALETTE["white"])
+            canvas.paragraph(Rect(left + 12, hint.y + 4, wide, free), s("hint_talk"), 13, PALETTE["white"])
 
     def _tokens(self, session: Session, canvas: Canvas) -> list[Button]:
         """The seven tokens, in a column at the left: the hands rest above the words, and they are what is to be read.
