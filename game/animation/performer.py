@@ -9,7 +9,7 @@ decisions -> playback    rows of the running units, variants mixed (EMBOS eq. 5)
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -77,7 +77,7 @@ class Performer:
         rest_weight[posture] = library.mix_weights(_NEUTRAL, bank.rest[posture])
         order = (posture, *(i for i in range(len(layers)) if i != posture))
         self._ticking = Ticking(bank, self.life, order, rest_weight)
-        self.bank: MotionBank = replace(bank, rows=self._ticking.rows)
+        self.bank: MotionBank = self._ticking.bank
         # Layers that stand at rest, as bits.
         held = {"full": (), "body": (), "gestures": tuple(x for x in layers if x != "gesture"), "face": layers}
         self._held = {mode: sum(1 << layers.index(name) for name in names) for mode, names in held.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from game.animation import channels as ch
 from game.animation.characters import PerformerState
 from game.animation.liveliness import LifeConfig
 from game.animation.motion_bank import FPS, MotionBank
-from game.animation.tick_data import BANK, CALL, CHARACTER, ROW, SIGNAL, UNIT, VARIANT
+from game.animation.tick_data import BANK, CALL, CHARACTER, ROW, SETUP, SIGNAL, UNIT, VARIANT
 from game.animation.tick_setup import setup_of
 from game.core.compiled import Block, Machine
 from game.embos import Decisions
@@ -29,7 +30,7 @@ class Ticking:
 
     def __init__(self, bank: MotionBank, life: LifeConfig, order: tuple[int, ...], rest_weight: Floats) -> None:
         """order: the layers, the posture's first; rest_weight: (L, 7) of the unit that says nothing, by layer."""
-        self._made_of = (bank, life, order, rest_weight)
+        self._life, self._order, self._rest_weight = life, order, rest_weight
         self._machine = Machine(MODULE)
         self._tick = self._machine.function("tick", CALL)
         self._leave = self._machine.function("leave", CALL)
@@ -37,9 +38,11 @@ class Ticking:
         self._rows.data[:, : ch.CHANNELS] = bank.rows
         self._rows.data[:, ch.CHANNELS :] = 0.0
         self._rows.data.setflags(write=False)
+        # Here once for both sides.
+        self.bank = replace(bank, rows=self._rows.data[:, : ch.CHANNELS])
         self._units = self._machine.kept(_units(bank), UNIT)
         self._variants = self._machine.kept(_variants(bank), VARIANT)
-        self._setup = self._machine.kept(setup_of(life), setup_of(life).dtype)
+        self._setup = self._machine.kept(setup_of(life), SETUP)
         table = np.zeros(1, dtype=BANK)
         table["rows"], table["units"] = self._rows.address, self._units.address
         table["variants"], table["most_variants"] = self._variants.address, bank.first.shape[2]
@@ -48,12 +51,7 @@ class Ticking:
         self._told: tuple[int, Block, list[NDArray[Any]]] = self._room(1)
 
     def __reduce__(self) -> tuple[type[Ticking], tuple[Any, ...]]:
-        return Ticking, self._made_of
-
-    @property
-    def rows(self) -> Floats:
-        """(R, CHANNELS) the bank's, where the compiled side has them."""
-        return self._rows.data[:, : ch.CHANNELS]
+        return Ticking, (self.bank, self._life, self._order, self._rest_weight)
 
     def tick(
         self,
@@ -73,6 +71,7 @@ class Ticking:
         if self._told[0] != n:
             self._told = self._room(n)
         _, signals, fields = self._told
+        # In the order of SIGNAL's fields.
         told = (emotion, gaze_target, speaking, decisions.numbers, decisions.unit, decisions.started)
         for field, value in zip(fields, told, strict=True):
             field[...] = value
@@ -100,6 +99,7 @@ class Ticking:
         return PerformerState(block.data, (self._machine, block))
 
     def _room(self, n: int) -> tuple[int, Block, list[NDArray[Any]]]:
+        """What the compiled side is told of n characters in a tick: how many, where, and its fields."""
         block = self._machine.block(n, SIGNAL)
         assert SIGNAL.names is not None
         return n, block, [block.data[name] for name in SIGNAL.names]
