@@ -105,7 +105,7 @@ def _timed(assets: StepAssets, seconds: float, choice: str = "wait") -> World:
     """Her hub with a timer on it."""
     world = talk_to_her(assets)
     assert world.talk is not None
-    beat = replace(world.talk.beat, timer=Timer(seconds, choice))
+    beat = world.talk.beat._replace(timer=Timer(seconds, choice))
     return replace(world, talk=replace(world.talk, beat=beat), timers=1.0)
 
 

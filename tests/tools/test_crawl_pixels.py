@@ -173,7 +173,7 @@ def test_a_faulty_interface_and_a_word_too_long_are_found(
     word = "Donaudampfschifffahrtsgesellschaftskapitaensmuetzenfabrik"
     beat = moment.talk.beat
     choices = tuple(replace(choice, en=word) if i == 0 else choice for i, choice in enumerate(beat.choices))
-    longer = replace(moment, lines=(), talk=replace(moment.talk, beat=replace(beat, choices=choices)))
+    longer = replace(moment, lines=(), talk=replace(moment.talk, beat=beat._replace(choices=choices)))
     monkeypatch.setitem(PALETTE, "faint", hex_colour("E8DCC8"))
     monkeypatch.setitem(SHOTS, "talk", replace(SHOTS["talk"], fov_deg=9.0))
     (taken,) = room.node(longer)
