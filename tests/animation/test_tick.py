@@ -20,6 +20,7 @@ from game.core.compiled import Machine
 from game.core.emotion_space import EMOTIONS
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
 from game.embos import Decisions, UnitLibrary
+from game.embos.draws import character_keys, uniform
 
 DT = 1.0 / 30.0
 POINTERS = {"limb_alone": "III", "hands_alone": "IIIII", "unit_alone": "IiIf", "layout": "II"}
@@ -256,6 +257,31 @@ def test_a_state_is_a_value(library: UnitLibrary) -> None:
     assert np.array_equal(a.rotation, b.rotation)
     with pytest.raises(ValueError, match="read-only"):
         a.rotation[0] = 0.0
+
+
+def test_eyes_and_lids_follow_the_draws_that_every_company_shares(library: UnitLibrary) -> None:
+    performer, life = Performer(library), LifeConfig()
+    decisions, signal = still(library, performer, 3)
+    state = performer.start(3, seed=4)
+    joy, zero = EMOTIONS.index("joy"), np.zeros(3, dtype=np.int64)
+    keys = character_keys(4 ^ 0x11FE, 0, 3)
+    right, up, wait, size = uniform(keys, zero, zero, 4).T
+    first, second = uniform(keys, zero + 1, zero, 2).T
+    seen = np.zeros((3, 2), dtype=bool)
+    for _ in range(180):
+        before, (state, _) = state.characters, performer.advance(state, decisions, signal, DT)
+        now = state.characters
+        for who in np.flatnonzero((before["darts"] == 0) & (now["darts"] == 1)):
+            far = 0.0 if size[who] < 0.33 else 2.0 * life.dart_size[joy]
+            wanted = (right[who] - 0.5) * 2.0 * far, (up[who] - 0.5) * far
+            np.testing.assert_allclose(now["dart"][who], wanted, rtol=1e-5)
+            assert now["dart_left_s"][who] == pytest.approx((0.35 + 1.3 * wait[who]) / life.darts_per_s[joy])
+            seen[who, 0] = True
+        for who in np.flatnonzero((before["blinks"] == 0) & (now["blinks"] == 1)):
+            rest = (0.3 + 1.4 * first[who]) * 60.0 / life.blinks_per_min[joy]
+            assert now["blink_left_s"][who] == pytest.approx(0.3 if second[who] < 0.125 else rest)
+            seen[who, 1] = True
+    assert seen.all()
 
 
 def test_performers_and_states_travel_between_processes(library: UnitLibrary) -> None:

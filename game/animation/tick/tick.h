@@ -45,7 +45,7 @@ typedef struct {
     const Unit *units;
     const Variant *variants; // [unit][emotion][most_variants]
     int32_t most_variants;
-    int32_t order[LAYERS];   // layers: the posture's, then the others as they come before each other
+    int32_t order[LAYERS];   // the posture's layer, then the others: who comes first is heard first
     float rows_per_s;
     int32_t rest[LAYERS];    // the unit that says nothing, by layer
     float rest_weight[LAYERS][EMOTIONS];
