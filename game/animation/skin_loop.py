@@ -30,7 +30,7 @@ RIG = np.dtype(
     [
         ("joints", "<i4"), ("joint", "<u4"), ("hips", "<i4"), ("hips_rest", "<f4", 3), ("reference", "<i4"),
         ("folds", "<i4"), ("fold", "<u4"), ("tips", "<i4"), ("tip", "<u4"), ("tip_share", "<f4"), ("eyes", "<u4"),
-        ("twists", "<i4"), ("hand", "<u4"), ("twist_share", "<f4"), ("most_twist", "<f4"), ("fit", "<u4"),
+        ("twists", "<i4"), ("hand", "<u4"), ("twist_share", "<f4"), ("most_half_twist", "<f4", 2), ("fit", "<u4"),
         ("sprung", "<i4"), ("spring", "<u4"), ("pieces", "<i4"), ("piece", "<u4"),
         ("colliders", "<i4"), ("collider", "<u4"), ("met", "<u4"),
         ("turn", "<u4"), ("model", "<u4"), ("pull", "<u4"), ("capsule", "<u4"),
@@ -62,7 +62,7 @@ class SkinTables:
     eyes: Table
     hand: Ints
     twist_share: float
-    most_twist: float
+    most_half_twist: tuple[float, float]
     fit: Table
     spring: Table
     piece: Table
@@ -105,7 +105,7 @@ class SkinLoop:
             rig[name] = self._keep(table, table.dtype if table.dtype.names else np.int32) if len(table) else 0
         for number, name in _COUNTS.items():
             rig[number] = len(getattr(tables, name))
-        for name in ("hips", "hips_rest", "tip_share", "twist_share", "most_twist"):
+        for name in ("hips", "hips_rest", "tip_share", "twist_share", "most_half_twist"):
             rig[name] = getattr(tables, name)
         rig["reference"] = len(REFERENCE)
         rooms = zip(ROOM_BYTES.items(), (turns, *map(len, (tables.joint, tables.piece, tables.collider))), strict=True)

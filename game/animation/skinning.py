@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ class Rig:
                 eyes=np.zeros(0, dtype=EYES) if eyes is None else _eyes(eyes),
                 hand=np.array([REFERENCE.index[hand] for _, hand in twists], dtype=np.intp),
                 twist_share=TWIST_SHARE,
-                most_twist=MAX_TWIST_RAD,
+                most_half_twist=(cos(0.5 * MAX_TWIST_RAD), sin(0.5 * MAX_TWIST_RAD)),
                 fit=np.zeros(0, dtype=np.void) if fitting is None else fitting.table(),
                 spring=moved.sprung(skeleton, springs),
                 piece=springs.piece,
@@ -209,7 +210,11 @@ class _Moved:
                 kept[parents[joint]] = True
         for joint in np.flatnonzero(~kept).tolist():
             anchor[joint] = anchor[parents[joint]]
-        return _Moved(np.flatnonzero(kept), np.cumsum(kept) - 1, anchor)
+        # By depth: a processor works on several joints at once where none waits for the one before.
+        order = np.concatenate([level[kept[level]] for level in skeleton.levels])
+        row = np.zeros(len(skeleton), dtype=np.intp)
+        row[order] = np.arange(len(order))
+        return _Moved(order, row, anchor)
 
     def table(self, skeleton: Skeleton, turn: Ints, place: Floats) -> NDArray[np.void]:
         """(M,) JOINT. turn: (J,) of skin/rig.h's local rotations, −1 for none; place: (J, 3) in the T-pose."""

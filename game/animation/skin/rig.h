@@ -70,7 +70,7 @@ typedef struct {
     const Eyes *eyes;    // or none
     int32_t twists;
     const int32_t *hand;  // whose twist each takes a share of
-    float twist_share, most_twist;
+    float twist_share, most_half_twist[2];  // cosine and sine
     const Fit *fit;  // or none: the reference's own proportions
     int32_t sprung;
     const Sprung *spring;

@@ -14,7 +14,7 @@ static const uint32_t LAYOUT[] = {
     SIZE(Collider), AT(Collider, joint), AT(Collider, start), AT(Collider, way), AT(Collider, radius_m),
     SIZE(Rig), AT(Rig, joints), AT(Rig, joint), AT(Rig, hips), AT(Rig, hips_rest), AT(Rig, reference), AT(Rig, folds),
     AT(Rig, fold), AT(Rig, tips), AT(Rig, tip), AT(Rig, tip_share), AT(Rig, eyes), AT(Rig, twists), AT(Rig, hand),
-    AT(Rig, twist_share), AT(Rig, most_twist), AT(Rig, fit), AT(Rig, sprung), AT(Rig, spring), AT(Rig, pieces),
+    AT(Rig, twist_share), AT(Rig, most_half_twist), AT(Rig, fit), AT(Rig, sprung), AT(Rig, spring), AT(Rig, pieces),
     AT(Rig, piece), AT(Rig, colliders), AT(Rig, collider), AT(Rig, met), AT(Rig, turn), AT(Rig, model), AT(Rig, pull),
     AT(Rig, capsule),
     SIZE(FigureJoint), AT(FigureJoint, turn), AT(FigureJoint, parent), AT(FigureJoint, reference),
