@@ -198,7 +198,8 @@ static void switch_sources(
     }
     for (int p = 0; p < PARTS; p++) {
         if (!(fresh >> p & 1)) continue;
-        float span = clamp((float)base_s * (GROWTH_A + GROWTH_B * sqrtf(turn[p] * FOUR_OVER_PI)), SHORTEST_S, LONGEST_S);
+        float growth = GROWTH_A + GROWTH_B * sqrtf(turn[p] * FOUR_OVER_PI);
+        float span = clamp((float)base_s * growth, SHORTEST_S, LONGEST_S);
         if (p == LEFT_ARM || p == RIGHT_ARM) span = most(span, ARC_PACE * sqrtf(length(bow[p - LEFT_ARM])));
         for (int at = 0; at < LAYERS; at++) {
             // At the longest until the stroke that a gesture is on its way to.

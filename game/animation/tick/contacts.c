@@ -116,7 +116,8 @@ static void table_depth(const Setup *setup, const Points *points, float *lift, f
     }
 }
 
-void clear_hands(const Setup *setup, const Rigid figure[FIGURE], const Rigid goals[2], const float *points, Vec3 push[2]) {
+void clear_hands(
+    const Setup *setup, const Rigid figure[FIGURE], const Rigid goals[2], const float *points, Vec3 push[2]) {
     Mat4 maps[BODY];
     for (int b = 0; b < BODY; b++) maps[b] = sphere_frame(&setup->body[b], &figure[setup->body[b].joint]);
     for (int hand = 0; hand < 2; hand++) {

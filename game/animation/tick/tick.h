@@ -62,8 +62,8 @@ typedef struct { int32_t joint; float inverse[3], middle[3]; } Ellipsoid;
 enum { RUNS = 20, EFFECTS = 48, BREATH = 65, BLINK = 4, BODY = 6, POINTS_OF_HAND = 7 };
 
 typedef struct {
-    // By emotion: pace of the sway, breaths per second, depth of the breath, sway, tempo; then of the eyes; then the bow
-    // of the hands' ways.
+    // By emotion: pace of the sway, breaths per second, depth of the breath, sway, tempo; then of the eyes; then the
+    // bow of the hands' ways.
     double sway_pace[EMOTIONS], breath_hz[EMOTIONS], breath_depth[EMOTIONS], sway[EMOTIONS], tempo[EMOTIONS];
     double darts_per_s[EMOTIONS], dart_size[EMOTIONS], blinks_per_min[EMOTIONS], arc[EMOTIONS];
     double sway_rate[SWAYS]; // radians per second
@@ -195,5 +195,6 @@ void live(const Tick *tick, Character *c, const double share[EMOTIONS], double s
 void look(const Tick *tick, Character *c, const double target[3], const Rigid *head, const Rigid *chest);
 
 // Contacts: how far each hand has to go to be out of body and table.
-void clear_hands(const Setup *setup, const Rigid figure[FIGURE], const Rigid goals[2], const float *points, Vec3 push[2]);
+void clear_hands(
+    const Setup *setup, const Rigid figure[FIGURE], const Rigid goals[2], const float *points, Vec3 push[2]);
 void hold_off(const Tick *tick, Character *c, const Vec3 wanted[2]);
