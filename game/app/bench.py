@@ -68,28 +68,9 @@ def autoplay(inkjs: Path | None = None) -> list[Row]:
 
     inkjs: a folder where ``npm install inkjs`` was run, to measure it beside ours on the same talk.
     """
-    from game.app import bench_talk
-    from game.app.autoplay import play_with_bodies
-    from game.app.autoplay.jobs import BODIES_PER_JOB
-    from game.app.body import BodyObserver
-    from game.app.content import load_talk_assets, stall_path
-    from game.app.policies import seat
+    from game.app import bench_bodies, bench_talk
 
-    assets = load_talk_assets(stall_path("flea"))
-    rows = bench_talk.rows(inkjs)
-
-    def with_bodies(observer: BodyObserver, policy: str) -> float:
-        start = time.perf_counter()
-        player = seat(assets, policy, library=observer.planner.library)
-        play_with_bodies(observer, [player] * BODIES_PER_JOB, 1, 0)
-        return BODIES_PER_JOB / (time.perf_counter() - start)
-
-    observer = BodyObserver.load(explain=False)
-    for policy in ("random", "reader"):
-        rates = [with_bodies(observer, policy) for _ in range(2)]
-        name = f"autoplay: with the planner at 30 Hz, {policy}, episodes/s"
-        rows.append(row(name, rates, unit="/s", more_is_better=True))
-    return rows
+    return bench_talk.rows(inkjs) + bench_bodies.rows()
 
 
 def first_frame() -> None:

@@ -29,47 +29,47 @@ static void sort(int64_t *keys, int count) {
     }
 }
 
-// φ_state = (1 − d) · (n − rank + 1)/n for the real units of a layer, d as it stands in phi. order: their places from
-// the smallest d to the largest, as they were found last: where a feeling drifts, few change.
-static void rank_share(const Tables *t, int layer, double *phi, int16_t *order) {
-    static int64_t keys[MOST_UNITS];
-    int count = t->count[layer];
-    phi += layer * t->width;
-    order += layer * t->width;
-    for (int i = 0; i < count; i++)
-        // Rounded, not cut: values such as ½ are whole steps, and noise must not push them below.
-        keys[i] = (int64_t)(smaller(phi[order[i]], 1) * STEPS + 0.5) << PLACE_BITS | order[i];
-    sort(keys, count);
-    for (int i = 0, ahead = 0; i < count; i++) {  // ahead: rank − 1; equal values share the best rank
-        if (i && keys[i] >> PLACE_BITS > keys[i - 1] >> PLACE_BITS) ahead = i;
-        order[i] = keys[i] & (MOST_UNITS - 1);
-        double d = phi[order[i]];
-        phi[order[i]] = (1 - d) * (1 - (double)ahead / count);
-    }
-}
-
 // φ_state without words: constant thresholds for rest, (1 − d) · (n − rank + 1)/n · presence for the others.
+// order: by layer, the places of its real units from the smallest d to the largest, as they were found last.
 static void compute_phi_state(const Tables *t, const double *emotion, double *phi, int16_t *order) {
-    static double shown[LAYERS * MOST_UNITS];
+    static double d[LAYERS * MOST_UNITS], presence[LAYERS * MOST_UNITS];
+    static int64_t keys[MOST_UNITS];
+    int slots = t->slots;
     double total = 0;
     for (int k = 0; k < FEELINGS; k++) total += emotion[k];
     total = larger(total, 1e-12);
-    memset(phi, 0, t->slots * sizeof *phi);
-    memset(shown, 0, t->slots * sizeof *shown);
+    memset(d, 0, slots * sizeof *d);
+    memset(presence, 0, slots * sizeof *presence);
     for (int k = 0; k < FEELINGS; k++) {
         double felt = emotion[k];
         if (felt == 0) continue;  // what is not felt does not count
-        const double *intensity = t->intensity_by_feeling + k * t->slots, *exists = t->exists_by_feeling + k * t->slots;
-        for (int p = 0; p < t->slots; p++) {
-            phi[p] += felt * fabs(felt - intensity[p]);  // d = Σ_k i'_k·|i'_k − i_k| / Σ_k i'_k
-            shown[p] += felt * exists[p];                // presence = Σ_k i'_k·σ_k / Σ_k i'_k
+        const double *intensity = t->intensity_by_feeling + k * slots, *exists = t->exists_by_feeling + k * slots;
+        for (int p = 0; p < slots; p++) {
+            d[p] += felt * fabs(felt - intensity[p]);  // d = Σ_k i'_k·|i'_k − i_k| / Σ_k i'_k
+            presence[p] += felt * exists[p];           // Σ_k i'_k·σ_k / Σ_k i'_k
         }
     }
-    for (int p = 0; p < t->slots; p++) phi[p] /= total;
-    for (int layer = 0; layer < LAYERS; layer++) rank_share(t, layer, phi, order);
-    for (int p = 0; p < t->slots; p++) {
-        double presence = shown[p] * (t->presence / total) + (1 - t->presence);
-        phi[p] = t->real[p] ? phi[p] * presence : t->constant_state[p];
+    double share = t->presence / total, rest = 1 - t->presence;
+    for (int p = 0; p < slots; p++) {
+        d[p] /= total;
+        presence[p] = presence[p] * share + rest;
+    }
+    memcpy(phi, t->constant_state, slots * sizeof *phi);
+    for (int layer = 0; layer < LAYERS; layer++) {
+        int first = layer * t->width, count = t->count[layer];
+        for (int i = 0; i < count; i++) {
+            int place = order[first + i];
+            // Rounded, not cut: values such as ½ are whole steps, and noise must not push them below.
+            keys[i] = (int64_t)(smaller(d[first + place], 1) * STEPS + 0.5) << PLACE_BITS | place;
+        }
+        sort(keys, count);
+        double rank_share = 1;  // (n − rank + 1)/n; equal d share the best rank
+        for (int i = 0; i < count; i++) {
+            int place = keys[i] & (MOST_UNITS - 1), p = first + place;
+            if (i && keys[i] >> PLACE_BITS > keys[i - 1] >> PLACE_BITS) rank_share = 1 - (double)i / count;
+            order[first + i] = place;
+            phi[p] = (1 - d[p]) * rank_share * presence[p];
+        }
     }
 }
 

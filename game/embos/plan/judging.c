@@ -22,7 +22,9 @@ void evaluate(const Tables *t, Character *c, double now_s, const Habit *habit, F
     double *state = factor(t, f, STATE), *score = factor(t, f, SCORE);
 
     // φ_time: 1 while it runs, the minimum while it waits, steady otherwise.
-    for (int p = 0; p < slots; p++) time[p] = wait_s(c)[p] >= now_s ? t->minimum[p] : t->steady;
+    const double *until_s = wait_s(c), *minimum = t->minimum;
+    double steady = t->steady;
+    for (int p = 0; p < slots; p++) time[p] = until_s[p] >= now_s ? minimum[p] : steady;
     for (int layer = 0; layer < LAYERS; layer++) {
         f->within[layer] = c->marks_s[layer][0] >= now_s;
         if (f->within[layer]) time[c->running[layer]] = 1;
@@ -30,28 +32,30 @@ void evaluate(const Tables *t, Character *c, double now_s, const Habit *habit, F
 
     // φ_state, for gestures times the word factor. One under way runs to its end though its word has passed.
     memcpy(state, phi_state(t, c), slots * sizeof *state);
-    for (int g = 0; g < t->gestures; g++) {
-        int slot = t->first_gesture + g;
-        bool under_way = f->within[t->gesture_layer] && c->running[t->gesture_layer] == slot;
-        state[slot] *= under_way ? larger(words(t, c)[g], 1) : words(t, c)[g];
-    }
+    double *said = words(t, c), *gesture = state + t->first_gesture;
+    int64_t running = f->within[t->gesture_layer] ? c->running[t->gesture_layer] - t->first_gesture : -1;
+    bool under_way = running >= 0 && running < t->gestures && said[running] < 1;
+    double unsaid = under_way ? gesture[running] : 0;
+    for (int g = 0, count = t->gestures; g < count; g++) gesture[g] *= said[g];
+    if (under_way) gesture[running] = unsaid;
     for (int i = 0; i < habit->count; i++) state[habit->slots[i]] = larger(state[habit->slots[i]], habit->share);
 
     for (int layer = 0; layer < LAYERS; layer++) {  // a layer depends on those above it
-        int first = layer * width;
-        int64_t mine = c->running[layer], best = first;
-        memcpy(continuity + first, t->follow + mine * width, width * sizeof *continuity);  // ω_c
-        for (int p = first; p < first + width; p++) {
-            linkage[p] = 1;
-            score[p] = time[p] * state[p] * continuity[p];
-        }
+        int first = layer * width, end = first + width;
+        memcpy(continuity + first, t->follow + c->running[layer] * width, width * sizeof *continuity);  // ω_c
+        for (int p = first; p < end; p++) linkage[p] = 1;
         for (int above = 0; above < layer; above++) {  // ω_l
             const double *blocks = t->blocks + (layer * (slots + 1) + f->chosen[above]) * width;
             for (int place = 0; place < width; place++) linkage[first + place] *= blocks[place];
         }
-        for (int p = first; p < first + width; p++) {
-            score[p] *= linkage[p];
-            if (score[p] > score[best]) best = p;
+        for (int p = first; p < end; p++) score[p] = time[p] * state[p] * continuity[p] * linkage[p];
+        int64_t mine = c->running[layer], best = first;
+        double highest = score[first];
+        for (int p = first + 1; p < end; p++) {
+            if (score[p] > highest) {
+                highest = score[p];
+                best = p;
+            }
         }
         f->beaten[layer] = best != mine && kept(t, layer, mine, best, c->marks_s[layer][1] >= now_s, f);
         f->chosen[layer] = f->beaten[layer] ? mine : best;
@@ -102,17 +106,17 @@ void decide(const Tables *t, Character *c, double time_s, double now_s, Factors 
     // What can change the decision by time alone: the end of a duration, the least time of a unit that is beaten, the
     // end of a wait after which a unit would score as much as the one chosen. Who starts something is judged from
     // another unit next time, so there every end counts.
-    c->next_s = INFINITY;
+    const double *wait = wait_s(c);
+    double next_s = INFINITY;
     for (int layer = 0; layer < LAYERS; layer++) {
         double end_s = c->marks_s[layer][0], least_until_s = c->marks_s[layer][1];
         double bar = anew ? -1 : score[f->chosen[layer]] * t->reach[layer];
-        if (end_s >= now_s) c->next_s = smaller(c->next_s, end_s);
-        if (least_until_s >= now_s && (f->beaten[layer] || anew)) c->next_s = smaller(c->next_s, least_until_s);
-        for (int p = layer * t->width; p < (layer + 1) * t->width; p++) {
-            double until_s = wait_s(c)[p];
-            if (until_s >= now_s && score[p] >= bar) c->next_s = smaller(c->next_s, until_s);
-        }
+        if (end_s >= now_s) next_s = smaller(next_s, end_s);
+        if (least_until_s >= now_s && (f->beaten[layer] || anew)) next_s = smaller(next_s, least_until_s);
+        for (int p = layer * t->width, end = p + t->width; p < end; p++)
+            next_s = smaller(next_s, wait[p] >= now_s && score[p] >= bar ? wait[p] : INFINITY);
     }
+    c->next_s = next_s;
     int gesture = t->gesture_layer;
     c->calm = !(anew || f->beaten[gesture]) && (f->within[gesture] || !t->real[f->chosen[gesture]]);
     for (int layer = 0; layer < LAYERS; layer++)
