@@ -64,7 +64,7 @@ BANK = _struct(
 )
 RUN = _struct(("first", "i4"), ("count", "i4"), ("part", "i4"))
 EFFECT = _struct(("cue", "i4"), ("channel", "i4"), ("amount", "f4"))
-ELLIPSOID = _struct(("joint", "i4"), ("inverse", "f4", 3), ("middle", "f4", 3))
+ELLIPSOID = _struct(("joint", "i4"), ("inverse", "f4", 3), ("middle", "f4", 3), ("near_square", "f4"))
 SETUP = _struct(
     *((name, "f8", _E) for name in ("sway_pace", "breath_hz", "breath_depth", "sway", "tempo")),
     *((name, "f8", _E) for name in ("darts_per_s", "dart_size", "blinks_per_min", "arc")),

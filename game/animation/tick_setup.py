@@ -24,6 +24,8 @@ _SAME = (
     *("mood_half_life_s", "blink_s", "head_share", "torso_share", "eye_yaw_rad", "eye_pitch_rad", "nod_rad"),
 )
 """What is handed on as it is configured."""
+_TOUCH_M = 0.03
+"""More than any point's radius and the distance at which a push begins."""
 
 
 def setup_of(life: LifeConfig) -> Table:
@@ -71,5 +73,7 @@ def _body() -> Table:
     body = np.zeros(len(collision.BODY), dtype=ELLIPSOID)
     for row, (joint, centre, radii) in zip(body, collision.BODY, strict=True):
         row["joint"], row["inverse"] = figure.WHERE[joint], np.divide(1.0, radii)
+        # What contacts.c takes for the distance is at least (norm − 1) · the least radius.
+        row["near_square"] = (1.0 + _TOUCH_M / min(radii)) ** 2
         row["middle"] = (REFERENCE.rest_model[REFERENCE.index[joint], :3, 3] - centre) / radii
     return body

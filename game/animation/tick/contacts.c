@@ -20,27 +20,11 @@ static const float GONE_M = 1e-7f;
 // eighth is far from everything.
 enum { WIDE = 8 };
 typedef struct { float x[WIDE], y[WIDE], z[WIDE]; } Points;
-// How the points lie to one ellipsoid: in its unit sphere's frame, their distance, metres, and how steeply it grows.
-typedef struct { float x[WIDE], y[WIDE], z[WIDE], distance[WIDE], slope[WIDE]; } Seen;
+// The points in an ellipsoid's unit sphere, how steeply its distance grows there, and how deep they are inside, softly
+// and 4 × SOFTNESS_M times too large.
+typedef struct { float x[WIDE], y[WIDE], z[WIDE], slope[WIDE], depth[WIDE]; } Touch;
 
 static void put(Points *points, int i, Vec3 p) { points->x[i] = p.x, points->y[i] = p.y, points->z[i] = p.z; }
-
-static void see(const Ellipsoid *e, const Mat4 *to_sphere, const Points *restrict points, Seen *restrict seen) {
-    const float(*m)[4] = to_sphere->m;
-    for (int i = 0; i < WIDE; i++) {
-        float px = points->x[i], py = points->y[i], pz = points->z[i];
-        float x = m[0][0] * px + m[0][1] * py + m[0][2] * pz + m[0][3];
-        float y = m[1][0] * px + m[1][1] * py + m[1][2] * pz + m[1][3];
-        float z = m[2][0] * px + m[2][1] * py + m[2][2] * pz + m[2][3];
-        float sx = x * e->inverse[0], sy = y * e->inverse[1], sz = z * e->inverse[2];
-        float norm_square = x * x + y * y + z * z + 1e-12f;
-        float norm = sqrtf(norm_square), slope = sqrtf(sx * sx + sy * sy + sz * sz + 1e-12f);
-        seen->x[i] = x, seen->y[i] = y, seen->z[i] = z;
-        seen->slope[i] = slope;
-        // Quílez' estimate for an ellipsoid, norm · (norm − 1) / slope; exact on the surface.
-        seen->distance[i] = (norm_square - norm) / slope;
-    }
-}
 
 // The map from model space into an ellipsoid's unit sphere.
 static Mat4 sphere_frame(const Ellipsoid *e, const Rigid *joint) {
@@ -53,15 +37,31 @@ static Mat4 sphere_frame(const Ellipsoid *e, const Rigid *joint) {
     return map;
 }
 
-// How deep the points are inside, softly and 4 × SOFTNESS_M times too large: the difference of two ramps' squares is a
-// smooth max(depth, 0). -> whether any is.
-static bool soft_depths(const Setup *setup, const Seen *seen, float depth[WIDE]) {
-    int any = 0;
+// -> whether any of the points touches the ellipsoid.
+static bool touches(const Setup *setup, const Ellipsoid *e, const Mat4 *map, const Points *points, Touch *touch) {
+    const float(*m)[4] = map->m;
+    float square[WIDE];
+    int near = 0, any = 0;
     for (int i = 0; i < WIDE; i++) {
-        float deep = setup->reach_m[i] - seen->distance[i];
+        float px = points->x[i], py = points->y[i], pz = points->z[i];
+        float x = m[0][0] * px + m[0][1] * py + m[0][2] * pz + m[0][3];
+        float y = m[1][0] * px + m[1][1] * py + m[1][2] * pz + m[1][3];
+        float z = m[2][0] * px + m[2][1] * py + m[2][2] * pz + m[2][3];
+        touch->x[i] = x, touch->y[i] = y, touch->z[i] = z;
+        square[i] = x * x + y * y + z * z + 1e-12f;
+        near |= square[i] < e->near_square;
+    }
+    if (!near) return false;
+    for (int i = 0; i < WIDE; i++) {
+        float x = touch->x[i] * e->inverse[0], y = touch->y[i] * e->inverse[1], z = touch->z[i] * e->inverse[2];
+        float slope = sqrtf(x * x + y * y + z * z + 1e-12f);
+        // Quílez' estimate for an ellipsoid, norm · (norm − 1) / slope; exact on the surface.
+        float distance = (square[i] - sqrtf(square[i])) / slope, deep = setup->reach_m[i] - distance;
+        // The difference of two ramps' squares is a smooth max(depth, 0).
         float outer = most(deep + SOFTNESS_M, 0), inner = most(deep - SOFTNESS_M, 0);
-        depth[i] = outer * outer - inner * inner;
-        any |= depth[i] > 0;
+        touch->slope[i] = slope;
+        touch->depth[i] = outer * outer - inner * inner;
+        any |= touch->depth[i] > 0;
     }
     return any;
 }
@@ -76,19 +76,17 @@ static Vec3 push_from_body(const Setup *setup, const Mat4 maps[BODY], const Poin
         Vec3 total = vec3(0, 0, 0);
         float weight = 0;
         for (int b = 0; b < BODY; b++) {
-            Seen seen;
-            float depth[WIDE];
-            see(&setup->body[b], &maps[b], &points, &seen);
-            if (!soft_depths(setup, &seen, depth)) continue;
+            Touch touch;
+            if (!touches(setup, &setup->body[b], &maps[b], &points, &touch)) continue;
             for (int i = 0; i < POINTS_OF_HAND; i++) {
                 // The map holds rotation / radius, so its transpose takes position / radius to the gradient.
                 const float(*m)[4] = maps[b].m;
-                float x = seen.x[i] / seen.slope[i], y = seen.y[i] / seen.slope[i], z = seen.z[i] / seen.slope[i];
+                float slope = touch.slope[i], x = touch.x[i] / slope, y = touch.y[i] / slope, z = touch.z[i] / slope;
                 Vec3 away = vec3(
                     m[0][0] * x + m[1][0] * y + m[2][0] * z, m[0][1] * x + m[1][1] * y + m[2][1] * z,
                     m[0][2] * x + m[1][2] * y + m[2][2] * z);
-                float cube = depth[i] * depth[i] * depth[i];
-                total = add(total, scale(away, cube * depth[i] / (4 * SOFTNESS_M)));
+                float depth = touch.depth[i], cube = depth * depth * depth;
+                total = add(total, scale(away, cube * depth / (4 * SOFTNESS_M)));
                 weight += cube;
             }
         }

@@ -15,6 +15,7 @@ static const uint32_t LAYOUT[] = {
     SIZE(Run), AT(Run, first), AT(Run, count), AT(Run, part),
     SIZE(Effect), AT(Effect, cue), AT(Effect, channel), AT(Effect, amount),
     SIZE(Ellipsoid), AT(Ellipsoid, joint), AT(Ellipsoid, inverse), AT(Ellipsoid, middle),
+    AT(Ellipsoid, near_square),
     SIZE(Setup), AT(Setup, sway_pace), AT(Setup, breath_hz), AT(Setup, breath_depth), AT(Setup, sway), AT(Setup, tempo),
     AT(Setup, darts_per_s), AT(Setup, dart_size), AT(Setup, blinks_per_min), AT(Setup, arc), AT(Setup, sway_rate),
     AT(Setup, transition_s), AT(Setup, eye_half_life_s), AT(Setup, mood_half_life_s), AT(Setup, blink_s),

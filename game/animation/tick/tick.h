@@ -56,8 +56,8 @@ typedef struct { int32_t first, count, part; } Run;
 // How much of a cue a channel gets.
 typedef struct { int32_t cue, channel; float amount; } Effect;
 // A part of the body: the figure's joint it hangs on; a point p of that joint's frame is p / radii + middle in the unit
-// sphere's.
-typedef struct { int32_t joint; float inverse[3], middle[3]; } Ellipsoid;
+// sphere's, and touches nothing where its square there is above near_square.
+typedef struct { int32_t joint; float inverse[3], middle[3], near_square; } Ellipsoid;
 
 enum { RUNS = 20, EFFECTS = 48, BREATH = 65, BLINK = 4, BODY = 6, POINTS_OF_HAND = 7 };
 
