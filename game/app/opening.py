@@ -21,7 +21,9 @@ from game.app.settings import load_settings, user_folder
 from game.app.step import new_world
 from game.app.strings import load_strings
 from game.app.world import leave_talk
+from game.core.compiled import compile_ahead
 from game.core.errors import BadInput
+from game.core.paths import ROOT
 
 if TYPE_CHECKING:
     from game.app.avatar import Avatar
@@ -37,6 +39,8 @@ def open_session(args: argparse.Namespace, avatar: Avatar | None = None) -> Sess
     ``args.stall`` None opens the whole market; a name or a dialogue file opens that stall alone. avatar: who stands
     in for every shopkeeper.
     """
+    # While files are read: all that moves is compiled.
+    compile_ahead(sorted((ROOT / "game").glob("*/*.wasm")))
     settings, message = load_settings()
     if args.language:
         settings = replace(settings, language=args.language)

@@ -14,7 +14,8 @@ from __future__ import annotations
 import ctypes
 import math
 import struct
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -26,7 +27,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from game.core.errors import MissingPart
 
-__all__ = ["Block", "Machine"]
+__all__ = ["Block", "Machine", "compile_ahead"]
 
 _PAGE = 1 << 16
 _ALIGN = 64
@@ -59,7 +60,7 @@ class Machine:
 
     def __init__(self, path: Path) -> None:
         """path: the .wasm file. Raises MissingPart where it is not there or cannot run here."""
-        engine, module = _module(path)
+        engine, module = _compiling(path).module()
         self._store = wasmtime.Store(engine)
         try:
             exports = wasmtime.Instance(self._store, module, []).exports(self._store)
@@ -156,13 +157,37 @@ def _rounded(size: int) -> int:
     return -(-size // step) * step
 
 
+class _Compiling(threading.Thread):
+    """Makes machine code of a module, beside what goes on meanwhile."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(daemon=True, name=f"compiling {path.name}")
+        self._path, self._engine = path, wasmtime.Engine()
+        self._module: wasmtime.Module | None = None
+        self._reason = ""
+        self.start()
+
+    def run(self) -> None:
+        try:
+            self._module = wasmtime.Module.from_file(self._engine, str(self._path))
+        except (OSError, wasmtime.WasmtimeError) as reason:
+            self._reason = str(reason).splitlines()[0]
+
+    def module(self) -> tuple[wasmtime.Engine, wasmtime.Module]:
+        """When it is there. Raises MissingPart."""
+        self.join()
+        if self._module is None:
+            raise MissingPart(f"{self._path}: {self._reason}; put it back, or run: run_game.py build compiled")
+        return self._engine, self._module
+
+
 @lru_cache(maxsize=16)
-def _module(path: Path) -> tuple[wasmtime.Engine, wasmtime.Module]:
-    """Machine code of a module, made once in a process."""
-    engine = wasmtime.Engine()
-    try:
-        return engine, wasmtime.Module.from_file(engine, str(path))
-    except (OSError, wasmtime.WasmtimeError) as reason:
-        raise MissingPart(
-            f"{path}: {str(reason).splitlines()[0]}; put it back, or run: run_game.py build compiled"
-        ) from None
+def _compiling(path: Path) -> _Compiling:
+    """Once in a process."""
+    return _Compiling(path)
+
+
+def compile_ahead(modules: Iterable[Path]) -> None:
+    """Begin with modules that will be wanted soon: a Machine then finds them ready."""
+    for path in modules:
+        _compiling(path)

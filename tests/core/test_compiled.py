@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import wasmtime
 
-from game.core.compiled import Machine
+from game.core.compiled import Machine, compile_ahead
 from game.core.errors import MissingPart
 from game.core.paths import ROOT
 from game.tools.compiling import compile_module, sources
@@ -118,6 +118,7 @@ def test_a_module_that_is_missing_or_broken_is_named_in_one_line(tmp_path: Path)
     broken = tmp_path / "broken.wasm"
     broken.write_bytes(b"no module")
     for path in (tmp_path / "missing.wasm", broken):
+        compile_ahead([path])  # that it cannot be had is told when it is wanted
         with pytest.raises(MissingPart, match="build compiled") as caught:
             Machine(path)
         assert path.name in str(caught.value)
