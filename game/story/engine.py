@@ -11,7 +11,7 @@ from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Script
-from game.story.ready import ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way, spoken
+from game.story.ready import ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way, offered, spoken
 from game.story.standing import Log, StoryState
 from game.story.state import restore, save
 from game.story.text import Text
@@ -150,8 +150,8 @@ class _Run(Scope):
             choice = laid[0]
             if choice.id == choice_id and (choice.always or self.usable(choice)):
                 return laid
-        offered = " | ".join([choice.id for choice, _ in self.laid])
-        raise BadInput("choice", expected=offered or "none", seen=choice_id)
+        ids = " | ".join([choice.id for choice, _ in self.laid])
+        raise BadInput("choice", expected=ids or "none", seen=choice_id)
 
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
@@ -301,23 +301,20 @@ class _Run(Scope):
         if node.pool is not None:
             seed = self.talk.seed ^ _DRAW_STREAM
             drawn = draw_choices(node.pool, self, self.past, self.everything, seed, self.turn * 64)
-        offered = [(choice, self.variant(choice)) for choice in drawn]
-        offered += [(choice, self.variant(choice)) for choice in node.laid if choice.always or self.shown(choice)]
-        taken = self.lay(offered, usable=len(drawn))
-        if node.always:
-            node.table = (self.laid, self.options)
-        return taken
+        laid = [(choice, self.variant(choice)) for choice in drawn]
+        laid += [(choice, self.variant(choice)) for choice in node.laid if choice.always or self.shown(choice)]
+        return self.lay(laid, usable=len(drawn))
 
-    def lay(self, offered: Sequence[tuple[ReadyChoice, ReadyLine]], *, usable: int = 0) -> bool:
+    def lay(self, laid: Sequence[tuple[ReadyChoice, ReadyLine]], *, usable: int = 0) -> bool:
         """Put choices on the table; ``usable``: so many of the first are known to be. Whether any can be taken."""
         taken, options = usable > 0, []
-        for at, (choice, line) in enumerate(offered):
+        for at, (choice, line) in enumerate(laid):
             if at < usable or choice.always or self.usable(choice):
                 options.append(line.offered or self.option(choice, line))
                 taken = True
             else:
                 options.append(self.greyed(choice, line))
-        self.laid, self.options = tuple(offered), tuple(options)
+        self.laid, self.options = tuple(laid), tuple(options)
         return taken
 
     def variant(self, choice: ReadyChoice) -> ReadyLine:
@@ -339,8 +336,7 @@ class _Run(Scope):
         key = tuple([self.names.get(name) for name in line.keeps])
         known = line.option.get(key)
         if known is None:
-            text = self.filled(line.line.text, keep="offer")
-            known = Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.choice.feel)
+            known = offered(choice, self.filled(line.line.text, keep="offer"))
             line.option.keep(key, known)
             line.offered = None if line.keeps else known
         return known

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Few", "Laid", "Left", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode", "ReadySay", "Test",
-    "Way", "never", "spoken",
+    "Way", "never", "offered", "spoken",
 ]  # fmt: skip
 
 Test = Callable[[Scope], Any]
@@ -66,6 +66,11 @@ class Few(dict[Key, Kept]):
 def spoken(line: LineDef, text: Text) -> Spoken:
     """A line with its words filled in."""
     return Spoken(line.id, line.speaker, text.en, text.ja, line.face, line.tone, line.gesture)
+
+
+def offered(choice: ReadyChoice, text: Text) -> Choice:
+    """A choice that can be taken, with its words filled in."""
+    return Choice(choice.id, choice.act, text.en, text.ja, True, None, choice.choice.feel)
 
 
 def never(scope: Scope) -> bool:
@@ -215,8 +220,8 @@ class ReadyChoice:
 class ReadyNode:
     """A node in talks about an item. after: what is kept for coming back from its call; halts: whether the talk waits
     or ends there; says: what it can say, by how the player's line landed; way: where it leads whatever holds; pool:
-    what it draws from; laid: its own choices, then the standing ones. table: all that lies on it where that is the same
-    in every talk; whoever lays it keeps it here.
+    what it draws from; laid: its own choices, then the standing ones. table: all that lies on it, and what the player
+    sees of it, where that is the same in every talk.
     """
 
     __slots__ = (
@@ -236,13 +241,15 @@ class ReadyNode:
         self.pool = ready.pool(node)
         laid = [ready.choice(choice) for choice in (*node.choices, *(ready.script.standing if node.standing else ()))]
         self.laid = tuple([choice for choice in laid if not choice.hidden])
-        self.table: tuple[Laid, tuple[Choice, ...]] | None = None
+        self.table = None if node.pools else _table(self.laid)
 
-    @property
-    def always(self) -> bool:
-        """Whether the same lies on the table in every talk about the item."""
-        same = [len(choice.texts) == 1 and not choice.texts[0].keeps and choice.always for choice in self.laid]
-        return not self.node.pools and bool(same) and all(same)
+
+def _table(choices: Sequence[ReadyChoice]) -> tuple[Laid, tuple[Choice, ...]] | None:
+    """Choices, each with its wording, and as the player sees them; None where that can differ from talk to talk."""
+    if not choices or not all(choice.always and len(choice.texts) == 1 and choice.texts[0].fixed for choice in choices):
+        return None
+    laid = tuple([(choice, choice.texts[0]) for choice in choices])
+    return laid, tuple([offered(choice, line.line.text) for choice, line in laid])
 
 
 def _only_way(ways: Sequence[Way]) -> str:
