@@ -62,7 +62,7 @@ def set_felt(session: Session, emotion: str, value: float) -> None:
     talk = _talk(session)
     six = list(talk.feeling.six)
     six[SIX.index(emotion)] = min(max(value, 0.0), 1.0)
-    changed = replace(talk, feeling=replace(talk.feeling, six=tuple(six)))
+    changed = replace(talk, feeling=talk.feeling._replace(six=tuple(six)))
     session.world = _settled(session, session.world, changed)
     session.designed = True
 
@@ -80,11 +80,11 @@ def set_goodwill(session: Session, name: str, value: float) -> None:
     talk = _talk(session)
     bargain = talk.bargain
     if name == "trust":
-        bargain = replace(bargain, trust=min(max(value, 0.0), 1.0))
+        bargain = bargain._replace(trust=min(max(value, 0.0), 1.0))
     elif name == "patience":
-        bargain = replace(bargain, patience=min(max(value, 0.0), 12.0))
+        bargain = bargain._replace(patience=min(max(value, 0.0), 12.0))
     elif name == "ask":
-        bargain = replace(bargain, ask=min(max(value, bargain.lowest), 1.0))
+        bargain = bargain._replace(ask=min(max(value, bargain.lowest), 1.0))
     else:
         raise BadInput("goodwill", expected="trust | patience | ask", seen=name)
     session.world = replace(session.world, talk=replace(talk, bargain=bargain))

@@ -221,8 +221,8 @@ def _talk_to_dict(talk: TalkState) -> dict[str, Any]:
             "last_right": talk.feeling.last_right,
             "used": sorted(talk.feeling.used),
         },
-        "bargain": _plain(talk.bargain),
-        "answer": _plain(talk.answer),
+        "bargain": talk.bargain._asdict(),
+        "answer": talk.answer._asdict(),
     }
 
 

@@ -40,7 +40,7 @@ from game.market import (
     surplus_share,
     turn_to_go,
 )
-from game.story import Beat, Chose, Environment, Memory, Script, Start, StoryState, Value, Warp, advance, begin
+from game.story import Beat, Chose, Environment, Memory, Script, Start, StoryState, Warp, advance, begin
 
 __all__ = [
     "MONEY_STEP",
@@ -115,28 +115,28 @@ def ask_money(list_price: int, ask: float) -> int:
     return min(math.ceil(round(ask * list_price / MONEY_STEP, 6)) * MONEY_STEP, list_price)
 
 
-def talk_env(state: TalkState, assets: TalkAssets, **now: Value) -> Environment:
-    """The names a dialogue condition may use; what is felt is not among them, on purpose.
+def talk_env(state: TalkState, assets: TalkAssets) -> Environment:
+    """The names a dialogue condition may use; what is felt is not among them, on purpose."""
+    return _env(state, assets, state.bargain, state.answer, state.deal_price)
 
-    now: names that the present move decides; numbers among them are floats.
-    """
-    bargain, list_price = state.bargain, state.list_price
+
+def _env(state: TalkState, assets: TalkAssets, bargain: Bargain, answer: Answer, deal_price: int) -> Environment:
+    list_price = state.list_price
     ask = float(ask_money(list_price, bargain.ask))
-    env: dict[str, Value] = {
-        "rounds": float(assets.market.rounds),
-        "trust": bargain.trust,
-        "patience": bargain.patience,
-        "round": bargain.round + 1.0,
-        "ask": ask,
-        "price": ask,
-        "list_price": float(list_price),
-        "purse": float(state.purse),
-        "visit": float(state.visit),
-        "offer": float(round(bargain.offer * list_price)),
-        "deal_price": float(state.deal_price),
-        "tidying": state.answer.tidying,
-    }
-    return Environment(env, **now)
+    return Environment(
+        rounds=float(assets.market.rounds),
+        trust=bargain.trust,
+        patience=bargain.patience,
+        round=bargain.round + 1.0,
+        ask=ask,
+        price=ask,
+        list_price=float(list_price),
+        purse=float(state.purse),
+        visit=float(state.visit),
+        offer=float(round(bargain.offer * list_price)),
+        deal_price=float(deal_price),
+        tidying=answer.tidying,
+    )
 
 
 def start_talk(
@@ -234,19 +234,10 @@ def choose(assets: TalkAssets, state: TalkState, choice: Choice) -> TalkState:
     deal = choice.offer if bargain.outcome == Outcome.DEAL and choice.offer is not None else 0
     if deal:
         deal = min(deal, ask_money(state.list_price, state.bargain.ask))
-    moved = TalkState(
-        state.seed, state.item, state.list_price, state.purse, state.story, feeling, bargain, state.beat,
-        state.visit, deal, answer,
-    )  # fmt: skip
-    env = talk_env(
-        moved,
-        assets,
-        round=float(counter),
-        quality=quality,
-        tells=answer.tells,
-        offer_result=answer.result,
-        offer=float(choice.offer or round(bargain.offer * state.list_price)),
-    )
+    env = _env(state, assets, bargain, answer, deal)
+    env.update(round=float(counter), quality=quality, tells=answer.tells, offer_result=answer.result)
+    if choice.offer:
+        env["offer"] = float(choice.offer)
     story, beat = advance(assets.script, state.story, Chose(choice.id, outcome=outcome), env)
     # The option's own `feel:` was added above, before the offer was weighed; the beat brings those of what was said.
     reacted = _with_stimuli(assets, feeling, beat)

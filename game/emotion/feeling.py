@@ -12,8 +12,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,8 +42,7 @@ _POLITE_SMILE = 0.55
 """What a mask shows: a polite smile, not a laugh."""
 
 
-@dataclass(frozen=True, eq=False)
-class Feeling:
+class Feeling(NamedTuple):
     """six: felt values in [0, 1]. mask_shows: the emotion index (joy or neutral) behind which this talk's mask hides.
 
     last_right: the act that was last taken well at once before (repeating it is only neutral); used: acts already

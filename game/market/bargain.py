@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from game.core.errors import BadInput
 from game.core.streams import Draws
@@ -48,8 +48,7 @@ class OfferResult:
     INSULT = "insult"
 
 
-@dataclass(frozen=True)
-class Bargain:
+class Bargain(NamedTuple):
     """lowest: the hidden lowest price L. ask: the public price. offer: the player's best so far, 0 if none.
 
     patience: rounds' worth of goodwill left. trust in [0, 1]. outcome: empty while the talk goes on.
@@ -65,8 +64,7 @@ class Bargain:
     price: float = 0.0
 
 
-@dataclass(frozen=True)
-class Move:
+class Move(NamedTuple):
     """What the player does in a round: an act (or ``wait``), how it was taken, and perhaps an offer in (0, 1]."""
 
     act: str
@@ -74,8 +72,7 @@ class Move:
     offer: float | None = None
 
 
-@dataclass(frozen=True)
-class Answer:
+class Answer(NamedTuple):
     """What the seller makes of it. ``excess``: by how much an insult went beyond the margin; ``above_lowest``:
     offer − L of a refused offer; ``conceded``: by how much the ask fell; ``tidying``: impatience to be seen."""
 
@@ -108,10 +105,10 @@ def ask_floor(rules: MarketRules, bargain: Bargain) -> float:
 def turn_to_go(rules: MarketRules, bargain: Bargain, quality: str) -> Bargain:
     """The player turns to go. Taken well, the seller calls them back with a better price; else the talk is over."""
     if quality != "right":
-        return replace(bargain, outcome=Outcome.WALKED_AWAY)
+        return bargain._replace(outcome=Outcome.WALKED_AWAY)
     floor = ask_floor(rules, bargain)
     ask = min(bargain.ask, bargain.ask - rules.called_back_fall * (bargain.ask - floor))
-    return replace(bargain, ask=ask, patience=bargain.patience - rules.patience_round, round=bargain.round + 1)
+    return bargain._replace(ask=ask, patience=bargain.patience - rules.patience_round, round=bargain.round + 1)
 
 
 _ONES = (1.0,) * 7

@@ -103,10 +103,10 @@ def test_what_is_not_in_the_view_changes_no_move(assets) -> None:
         place = seat(masked, name)
         for episode in range(4):
             one, other = sit_down(place, 6, episode), sit_down(place, 6, episode)
-            other.state = replace(other.state, bargain=replace(other.state.bargain, lowest=0.61))
+            other.state = replace(other.state, bargain=other.state.bargain._replace(lowest=0.61))
             if name != "oracle":
                 six = tuple(np.roll(other.state.feeling.six, 1).tolist())
-                other.state = replace(other.state, feeling=replace(other.state.feeling, six=six))
+                other.state = replace(other.state, feeling=other.state.feeling._replace(six=six))
             moves = [talk.player.move(place.eyes.view(place.sees, talk.state)) for talk in (one, other)]
             assert moves[0] == moves[1]
 
@@ -153,7 +153,7 @@ def test_a_face_taken_at_its_word_is_fooled_by_a_mask_and_one_that_is_known_is_n
     right = {"naive": 0, "knowing": 0}
     moods = [(label, shows) for label in range(6) for shows in (2, 6)]
     for label, shows in moods:
-        feeling = replace(known.feeling(label, 0.6), mask_shows=shows)
+        feeling = known.feeling(label, 0.6)._replace(mask_shows=shows)
         drawn = eye.drawn(shown_values(collector.person, feeling))
         for name, reading in (("naive", naive), ("knowing", knowing)):
             right[name] += int(reading.log_likelihood(drawn).max(axis=0).argmax()) == label

@@ -59,7 +59,7 @@ def test_a_right_line_repeated_at_once_is_only_neutral_and_pressing_works_once()
     assert appraise(RULES, STUDENT, other, "joke") == "right"
     pressed = after_line(RULES, STUDENT, feel(fear=0.8), "press", "right")
     talked = after_line(RULES, STUDENT, pressed, "small_talk", "right")
-    assert appraise(RULES, STUDENT, replace(talked, six=feel(fear=0.8).six), "press") == "neutral"
+    assert appraise(RULES, STUDENT, talked._replace(six=feel(fear=0.8).six), "press") == "neutral"
 
 
 def test_right_lines_calm_and_wrong_lines_hurt_by_the_profile() -> None:

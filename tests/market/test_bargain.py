@@ -30,7 +30,7 @@ NEUTRAL = emotion_vector({})
 
 
 def fresh(lowest: float = 0.6, **changes: float) -> Bargain:
-    return replace(Bargain(lowest=lowest, ask=1.0, offer=0.0, patience=50.0, trust=0.3), **changes)
+    return Bargain(lowest=lowest, ask=1.0, offer=0.0, patience=50.0, trust=0.3)._replace(**changes)
 
 
 def rng(seed: int = 1) -> np.random.Generator:
