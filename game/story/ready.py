@@ -241,7 +241,7 @@ class ReadyNode:
         self.pool = ready.pool(node)
         laid = [ready.choice(choice) for choice in (*node.choices, *(ready.script.standing if node.standing else ()))]
         self.laid = tuple([choice for choice in laid if not choice.hidden])
-        self.table = None if node.pools else _table(self.laid)
+        self.table = _table(self.laid) if node.choices and not node.pools else None
 
 
 def _table(choices: Sequence[ReadyChoice]) -> tuple[Laid, tuple[Choice, ...]] | None:
