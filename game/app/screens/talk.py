@@ -251,7 +251,7 @@ class TalkScreen:
             canvas.panel(words, fade(PALETTE["shade"], 1.2), radius=12)
             room = Rect(left + 14, y + 54, card_width(canvas) - 28, 36)
             canvas.paragraph(room, self._shown(session, focused), 16, PALETTE["white"], middle=True)
-        # The keys have the free that is left below, and take of it what they need.
+        # The keys have the room that is left below, and take of it what they need.
         top = y + (98.0 if focused is not None else 52.0)
         wide, free = card_width(canvas) - 24, canvas.height - 16 - 8 - top
         rows, _, step = canvas.fitted(s("hint_talk"), wide, free, 13)
