@@ -21,7 +21,7 @@ from game.app.performance import factors_of, played_span
 from game.app.step import PEAK_S, StepAssets, line_cues, reaction_to, targets_of, timed_line
 from game.app.talk import TalkAssets, TalkState
 from game.app.world import TICK_S
-from game.embos import Planner, PlannerState, Told, greet, habit_of
+from game.embos import GestureCues, Planner, PlannerState, Told, greet, habit_of
 from game.embos.draws import character_keys
 from game.story import Spoken
 
@@ -63,13 +63,15 @@ class Watched:
 
 @dataclass
 class _Actor:
-    """One talk: what changes between lines. number: of the talk, whatever its row is by now."""
+    """One talk: what changes between lines. number: of the talk, whatever its row is by now; reacted: the present
+    beat's reaction has been shown, which its first answer brings."""
 
     number: int
     watched: list[Watched] = field(default_factory=list)
     talk: TalkState | None = None
     queue: tuple[Spoken, ...] = ()
     speaking: bool = False
+    reacted: bool = False
     began: int = 0
 
 
@@ -180,7 +182,7 @@ class _Bodies:
             return
         if not actor.watched:
             self._feel(row, *targets_of(self.assets, talk))
-        actor.talk, actor.queue, actor.began = talk, talk.beat.lines, tick
+        actor.talk, actor.queue, actor.began, actor.reacted = talk, talk.beat.lines, tick, False
         actor.watched.append(Watched())
         self.fresh[row], self.over_tick[row] = True, tick + MAX_TICKS
         if not actor.speaking:
@@ -190,32 +192,45 @@ class _Bodies:
 
     def _speak(self, rows: Ints) -> None:
         """Lines begin or have been heard out."""
-        if not rows.size:
-            return
-        time_s: Floats = np.asarray(self.tick[rows] * TICK_S, dtype=np.float64)
-        emotion = self.ahead.leaked(rows, time_s)
-        lead_s = self.planner.library.stroke_lead_s(emotion)
-        for at, row in enumerate(rows.tolist()):
-            actor, now_s = self.actors[row], float(time_s[at])
-            if not actor.queue:
-                # Everything is said: what is felt now is what the next line will be judged by.
-                assert actor.talk is not None
-                self._feel(row, *targets_of(self.assets, actor.talk))
-                actor.speaking = False
-                self._all_said(row)
+        spoken: list[tuple[int, Spoken]] = []
+        for row in rows.tolist():
+            actor = self.actors[row]
+            if actor.queue:
+                line, actor.queue = actor.queue[0], actor.queue[1:]
+                actor.speaking = True
+                if line.speaker == "shopkeeper":
+                    spoken.append((row, line))
+                else:
+                    self._say(row, line, None, float(self.tick[row] * TICK_S))
                 continue
-            line, actor.queue = actor.queue[0], actor.queue[1:]
-            timed, cues, start_s = timed_line(line, LANGUAGE, TEXT_SPEED), None, now_s
-            if line.speaker == "shopkeeper":
-                cues, start_s = line_cues(self.planner, timed, line.gesture, emotion[at], lead_s[at], now_s)
-            self.ahead.say(row, cues)
-            reaction = reaction_to(actor.talk, line, self.ahead.target[row, :6])
-            if reaction is not None:
-                self._feel(row, *reaction)
-                self.ahead.burst_s[row] = now_s + PEAK_S
-            actor.speaking = True
-            self.due_s[row] = start_s + timed.length_s + PATIENCE_S
-            self.speaks[row] = first_tick_after(self.due_s[row])
+            # Everything is said: what is felt now is what the next line will be judged by.
+            assert actor.talk is not None
+            self._feel(row, *targets_of(self.assets, actor.talk))
+            actor.speaking = False
+            self._all_said(row)
+        if not spoken:
+            return
+        who = np.array([row for row, _ in spoken], dtype=np.intp)
+        time_s: Floats = np.asarray(self.tick[who] * TICK_S, dtype=np.float64)
+        emotion = self.ahead.leaked(who, time_s)
+        lead_s = self.planner.library.stroke_lead_s(emotion)
+        for at, (row, line) in enumerate(spoken):
+            actor, now_s = self.actors[row], float(time_s[at])
+            timed = timed_line(line, LANGUAGE, TEXT_SPEED)
+            cues, start_s = line_cues(self.planner, timed, line.gesture, emotion[at], lead_s[at], now_s)
+            self._say(row, line, cues, start_s)
+            if not actor.reacted:
+                actor.reacted = True
+                reaction = reaction_to(actor.talk, line, self.ahead.target[row, :6])
+                if reaction is not None:
+                    self._feel(row, *reaction)
+                    self.ahead.burst_s[row] = now_s + PEAK_S
+
+    def _say(self, row: int, line: Spoken, cues: GestureCues | None, start_s: float) -> None:
+        """A line begins."""
+        self.ahead.say(row, cues)
+        due_s = start_s + timed_line(line, LANGUAGE, TEXT_SPEED).length_s + PATIENCE_S
+        self.due_s[row], self.speaks[row] = due_s, first_tick_after(due_s)
 
     def _feel(self, row: int, felt: Floats, shown: Floats) -> None:
         """What the body's feeling and the face go towards from now on."""

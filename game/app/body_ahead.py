@@ -24,7 +24,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
 
-TICKS = 24
+TICKS = 64
 """So many are looked at together, at most."""
 _SHARE = np.repeat([damper_fraction(FELT_HALF_LIFE_S, TICK_S), damper_fraction(SHOWN_HALF_LIFE_S, TICK_S)], 6)
 _SHARE.setflags(write=False)
