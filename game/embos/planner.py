@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +27,6 @@ from game.embos.tables import PlannerTables, build_tables
 __all__ = ["Planner"]
 
 Ints = NDArray[np.intp]
-Time = TypeVar("Time", float, NDArray[np.float64])
 
 
 class Planner:
@@ -117,7 +115,7 @@ class Planner:
             return False
         return not looking or bool(np.abs(signal.emotion - state.emotion).max(initial=0.0) <= self.config.tolerance)
 
-    def moment(self, time_s: Time, dt_s: float) -> Time:
+    def moment(self, time_s: float, dt_s: float) -> float:
         """Thresholds before this moment count as passed: half a look ahead, so that lengths are right on average."""
         return time_s + 0.5 * max(self.config.look_s, dt_s)
 

@@ -96,7 +96,9 @@ class Decisions:
 class CharacterKind:
     """Where the records of one planner's characters are kept, and how they are laid out.
 
-    record: struct Character of plan.h and what follows it, field by field as PlannerState names them.
+    record: struct Character of plan.h and what follows it, field by field as PlannerState names them, and next_s: when
+    the decision may change by time alone; calm: no end of a word can change it; settled: (7,) the emotion that waits
+    were last drawn for; untried: (P,) where a slot's wait was drawn rather than earned; order: see feeling.c.
     """
 
     machine: Machine
@@ -154,12 +156,11 @@ class Characters:
 class PlannerState:
     """Where n characters stand; never changed in place (but for who spends it), so that it can be kept or compared.
 
-    soonest_s: the least of next_s; starting: whether anybody has started anything in the last tick. By character:
-    key: (n,) uint64 of its draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running unit's duration, and
-    until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf if it never ran; untried:
-    (n, P) bool, True where that wait was drawn rather than earned. starts: (n, L) how often the layer has started a
-    unit. emotion: (n, 7) and phi_state: (n, P) as last computed. words: (n, G) of the last tick. next_s: (n,) when the
-    decision may change by time alone; calm: (n,) bool, no end of a word can change it. decisions: the last tick's.
+    soonest_s: when somebody's decision may change by time alone; starting: whether anybody has started anything in the
+    last tick. By character: key: (n,) uint64 of its draws. running: (n, L) slots. marks_s: (n, L, 2) end of the running
+    unit's duration, and until when it may not be given up. wait_s: (n, P) end of each slot's waiting time, −inf if it
+    never ran. starts: (n, L) how often the layer has started a unit. emotion: (n, 7) and phi_state: (n, P) as last
+    computed. words: (n, G) of the last tick. decisions: the last tick's.
     """
 
     characters: Characters
@@ -190,10 +191,6 @@ class PlannerState:
         return np.asarray(self.characters.seen["wait_s"])
 
     @property
-    def untried(self) -> Bools:
-        return np.asarray(self.characters.seen["untried"])
-
-    @property
     def starts(self) -> Ints:
         return np.asarray(self.characters.seen["starts"])
 
@@ -208,14 +205,6 @@ class PlannerState:
     @property
     def words(self) -> Floats:
         return self.characters.last[1]
-
-    @property
-    def next_s(self) -> Floats:
-        return np.asarray(self.characters.seen["next_s"])
-
-    @property
-    def calm(self) -> Bools:
-        return np.asarray(self.characters.seen["calm"])
 
     def standing(self, *, spend: bool) -> PlannerState:
         """The tick in which nothing starts."""

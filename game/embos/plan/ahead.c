@@ -11,6 +11,8 @@ typedef struct {
     uint8_t started[LAYERS], unused[5];
 } Happening;
 
+_Static_assert(sizeof(Happening) == 312, "as in judging.py");
+
 typedef struct {
     double dt_s, half_window_s, lead_radius;
     Habit habit;

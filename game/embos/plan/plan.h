@@ -10,18 +10,19 @@ enum { LAYERS = 3, FEELINGS = 7, MOST_UNITS = 1024 };
 typedef struct {
     double steady, look_s, eager, presence, radius, tolerance;
     double reach[LAYERS];
-    int32_t count[LAYERS],  width, slots, gestures, first_gesture, gesture_layer, settled_count, quantiles, character_bytes;
-    const double *intensity, *exists;            // [P][7]
-    const double *intensity_by_feeling, *exists_by_feeling;  // [7][P]
-    const double *timing_s;                      // [P][3][7]: L_d, L_w, start to stroke
-    const double *sigma, *constant_state, *least_s, *minimum;  // [P]
-    const double *follow;                        // [P + 1][M]
-    const double *blocks;                        // [L][P + 1][M]
-    const double *leads_s;                       // [G][2]: least and most from start to stroke
-    const double *normal, *share;                // [quantiles] of the normal distribution, and what lies below each
-    const int64_t *unit;                         // [P]
-    const uint8_t *real;                         // [P]
-    const int32_t *settled;                      // [settled_count]
+    int32_t count[LAYERS], width, slots, gestures, first_gesture, gesture_layer, settled_count, quantiles;
+    int32_t character_bytes;
+    const double *intensity, *exists;                           // [P][7]
+    const double *intensity_by_feeling, *exists_by_feeling;     // [7][P]
+    const double *timing_s;                                     // [P][3][7]: L_d, L_w, start to stroke
+    const double *sigma, *constant_state, *least_s, *minimum;   // [P]
+    const double *follow;                                       // [P + 1][M]: ω_c
+    const double *blocks;                                       // [L][P + 1][M]: ω_l
+    const double *leads_s;                                      // [G][2]: least and most from start to stroke
+    const double *normal, *share;                               // [quantiles] of the normal distribution, what is below
+    const int64_t *unit;                                        // [P]
+    const uint8_t *real;                                        // [P]
+    const int32_t *settled;                                     // [settled_count]
 } Tables;
 
 // One character, see PlannerState. After it: wait_s[P], phi_state[P], words[G], order[P], untried[P].
@@ -32,6 +33,8 @@ typedef struct {
     double marks_s[LAYERS][2], numbers[LAYERS][11];
     uint8_t started[LAYERS], calm, unused[4];
 } Character;
+
+_Static_assert(sizeof(Character) == 520, "as in CharacterKind");
 
 static inline double *wait_s(Character *c) { return (double *)(c + 1); }
 static inline double *phi_state(const Tables *t, Character *c) { return (double *)(c + 1) + t->slots; }
@@ -47,6 +50,8 @@ typedef struct {
     int64_t chosen[LAYERS];
     uint8_t within[LAYERS], beaten[LAYERS], unused[2];
 } Factors;
+
+_Static_assert(sizeof(Factors) == 32, "as in judging.py");
 
 enum Factor { CONTINUITY, LINKAGE, TIME, STATE, SCORE, FACTORS };
 
