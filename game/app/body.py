@@ -23,7 +23,7 @@ from game.app.talk import TalkAssets, TalkState
 from game.app.world import TICK_S
 from game.embos import GestureCues, Planner, PlannerState, Told, greet, habit_of
 from game.embos.draws import character_keys
-from game.story import Spoken
+from game.story import Spoken, TimedText
 
 __all__ = ["BodyObserver", "Watched"]
 
@@ -201,7 +201,7 @@ class _Bodies:
                 if line.speaker == "shopkeeper":
                     spoken.append((row, line))
                 else:
-                    self._say(row, line, None, float(self.tick[row] * TICK_S))
+                    self._say(row, timed_line(line, LANGUAGE, TEXT_SPEED), None, float(self.tick[row] * TICK_S))
                 continue
             # Everything is said: what is felt now is what the next line will be judged by.
             assert actor.talk is not None
@@ -218,7 +218,7 @@ class _Bodies:
             actor, now_s = self.actors[row], float(time_s[at])
             timed = timed_line(line, LANGUAGE, TEXT_SPEED)
             cues, start_s = line_cues(self.planner, timed, line.gesture, emotion[at], lead_s[at], now_s)
-            self._say(row, line, cues, start_s)
+            self._say(row, timed, cues, start_s)
             if not actor.reacted:
                 actor.reacted = True
                 reaction = reaction_to(actor.talk, line, self.ahead.target[row, :6])
@@ -226,10 +226,10 @@ class _Bodies:
                     self._feel(row, *reaction)
                     self.ahead.burst_s[row] = now_s + PEAK_S
 
-    def _say(self, row: int, line: Spoken, cues: GestureCues | None, start_s: float) -> None:
+    def _say(self, row: int, timed: TimedText, cues: GestureCues | None, start_s: float) -> None:
         """A line begins."""
         self.ahead.say(row, cues)
-        due_s = start_s + timed_line(line, LANGUAGE, TEXT_SPEED).length_s + PATIENCE_S
+        due_s = start_s + timed.length_s + PATIENCE_S
         self.due_s[row], self.speaks[row] = due_s, first_tick_after(due_s)
 
     def _feel(self, row: int, felt: Floats, shown: Floats) -> None:
