@@ -12,7 +12,21 @@ import pytest
 
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput, Where
-from game.story import ACTS, Chose, Memory, Script, Start, advance, begin, load_script, memory_of, restore, resume, save
+from game.story import (
+    ACTS,
+    Chose,
+    Memory,
+    Script,
+    Start,
+    Warp,
+    advance,
+    begin,
+    load_script,
+    memory_of,
+    restore,
+    resume,
+    save,
+)  # fmt: skip
 from game.story.chance import Lots, pick_weighted, shuffled, uniform, uniforms
 
 
@@ -415,3 +429,36 @@ def test_a_state_is_the_same_with_its_ids_as_with_its_bits(tiny):
         assert later != state
         assert event.choice in later.chosen
         state = later
+
+
+def test_nodes_that_follow_one_another_are_still_passed_in_their_order(tmp_path, tiny_text):
+    """What is said at a node knows the nodes, lines and effects before it and nothing of those that always follow."""
+    rows = """\
+  hello:
+    lines:
+      - {id: one, again: true, en: "One.", ja: "一。"}
+      - {id: early, if: "visits.second == 0 and not seen('two') and told == 0", en: "Early.", ja: "早い。"}
+    feel: {joy: 0.1}
+    to: second
+  second:
+    set: {told: told + 1}
+    lines:
+      - {id: two, again: true, en: "Two.", ja: "二。"}
+      - {id: late, if: "visits.hello == 1 and seen('one') and told == 1 and not seen('hub')", en: "Late.", ja: "遅い。"}
+    feel: {joy: 0.2}
+    to: hub
+"""
+    start, end = tiny_text.index("  hello:\n"), tiny_text.index("  hub:\n")
+    path = tmp_path / "tiny.yaml"
+    path.write_text(tiny_text[:start] + rows + tiny_text[end:], encoding="utf-8")
+    script = load_script(path)
+    state, beat = advance(script, begin(script, "cup", 1), Start(), {})
+    assert _ids(beat)[:4] == ["one", "early", "two", "late"]
+    assert [stimulus.source for stimulus in beat.stimuli] == ["hello", "second"]
+    assert state.visits == {"hello": 1, "second": 1, "hub": 1}
+    assert list(state.visits) == ["hello", "second", "hub"]
+    assert state.heard == {"one": 1, "two": 1}
+    state, beat = advance(script, state, Warp("hello"), {})
+    assert _ids(beat)[:2] == ["one", "two"]
+    assert state.heard == {"one": 2, "two": 2}
+    assert state.variables["told"] == 2
