@@ -224,6 +224,11 @@ class CharacterDrawing(Owner):
         self._skinning.transform(self._captured, moderngl.POINTS, vertices=count)
         return self._screen_box(rows, world_to_clip, size)
 
+    def stand_behind(self, scene: NDArray[np.float32] | None) -> None:
+        """Leave out what the scene hides (``scene_cells``), where the CPU looks for what is seen."""
+        if self._sight is not None:
+            self._sight.stand_behind(scene)
+
     def _screen_box(
         self, rows: NDArray[np.float32], world_to_clip: NDArray[np.float64], size: tuple[int, int]
     ) -> tuple[int, int, int, int]:

@@ -29,6 +29,7 @@ from game.render.motes import Motes
 from game.render.moving_drawing import MovingDrawing
 from game.render.output import Output
 from game.render.scene_drawing import BakeKey, SceneDrawing, backdrop_place
+from game.render.silhouette import scene_cells
 from game.render.sky import Sky
 from game.render.targets import Box, FrameTargets
 from game.render.text import FontSet
@@ -49,6 +50,7 @@ class _Canvas:
     targets: FrameTargets
     baked: BakeKey | None = None
     is_draft: bool = False
+    cells: NDArray[np.float32] | None = None  # what of a person the baked picture hides
     seen: BakeKey | None = None  # of the last frame
     turning: bool = False  # the camera moved between the last two frames
     item: tuple[object, ...] = ()  # what is baked in the place of the stall
@@ -221,7 +223,7 @@ class Renderer(Owner):
         self._light_up(day_share)
         with self.times.measured("bake"):
             self._bake(key, canvas)
-        box = self._prepare(view, targets)
+        box = self._prepare(view, targets, canvas.cells)
         # A whole copy costs a software rasteriser less than one cut to a box: it is a plain move of memory. All that is
         # drawn elsewhere was drawn before it: going back to a picture begun costs it the whole picture once more.
         targets.work.use()
@@ -269,12 +271,18 @@ class Renderer(Owner):
         if key == canvas.baked and (draft or not canvas.is_draft):
             return
         self._scene.bake(key, canvas.targets.bake, self.level.line_px, self._lights, draft=draft)
-        canvas.baked, canvas.is_draft = key, draft
+        canvas.baked, canvas.is_draft, canvas.cells = key, draft, None
+        if self.device.software and not draft and isinstance(self._character, CharacterDrawing):
+            (width, height), depth = key.size, canvas.targets.bake.still.depth_attachment
+            assert isinstance(depth, moderngl.Texture)
+            pixels = np.frombuffer(depth.read(), np.float32).reshape(height, width)
+            canvas.cells = scene_cells(pixels, key.camera.projection(width / height))
 
-    def _prepare(self, view: FrameView, targets: FrameTargets) -> Box | None:
+    def _prepare(self, view: FrameView, targets: FrameTargets, cells: NDArray[np.float32] | None) -> Box | None:
         """Everything that is drawn or skinned aside: passers-by, face, meshes, the shadow map.
 
-        Returns the box of the picture that the person covers, None where there is nobody.
+        cells: what of the person the scene hides. Returns the box of the picture that the person covers, None where
+        there is nobody.
         """
         light = TABLE_LIGHT if view.show_stall else STUDIO_LIGHT
         world_to_clip = self._frame.write(view.camera, self._lights, light, targets.size, self.level.line_px)
@@ -291,8 +299,11 @@ class Renderer(Owner):
                 self._moving.pose(view.time_s, world_to_clip, targets.size)
             if character is None or painter is None:
                 return None
-            if isinstance(character, AvatarDrawing) and view.look is not None:
-                character.look(view.look)
+            if isinstance(character, AvatarDrawing):
+                if view.look is not None:
+                    character.look(view.look)
+            else:
+                character.stand_behind(cells)
             # Frames far apart, as those of a film strip, have each a shadow of their own.
             late = not 0.0 <= view.time_s - self._cast_s <= _STALE_S
             cast = late or self._frames % self.level.shadow_every == 0 or self._light is not light

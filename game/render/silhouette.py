@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from game.core.compiled import Machine
+from game.core.compiled import Block, Machine
 
-__all__ = ["Edges", "Sight", "SightFinder", "find_edges"]
+__all__ = ["Edges", "Sight", "SightFinder", "find_edges", "scene_cells"]
 
 _MODULE = Path(__file__).with_name("sight.wasm")
 _CELL_PX = 2  # side of a cell of the grid in which hidden faces are found
@@ -74,6 +76,25 @@ class Sight:
     line: NDArray[np.int32]
 
 
+def scene_cells(depth: NDArray[np.float32], projection: NDArray[np.floating[Any]]) -> NDArray[np.float32]:
+    """What a picture's depth (h, w) in 0..1, first row at the bottom, hides: 1 / w by cell of the grid.
+
+    A cell hides what the farthest of its own and its neighbours' pixels hides: edges have samples, this depth has none.
+    """
+    height, width = depth.shape
+    rows, columns = _grid_shape((width, height))
+    near = (2.0 * depth + (projection[2, 2] - 1.0)) / projection[2, 3]
+    near = np.pad(near, ((0, rows * _CELL_PX - height), (0, columns * _CELL_PX - width)))
+    cells = near.reshape(rows, _CELL_PX, columns, _CELL_PX).min(axis=(1, 3))
+    around = sliding_window_view(np.pad(cells, 1, mode="edge"), (3, 3))
+    return np.ascontiguousarray(np.clip(around.min(axis=(2, 3)), 0.0, None), dtype=np.float32)
+
+
+def _grid_shape(size: tuple[int, int]) -> tuple[int, int]:
+    """Rows and columns of the grid of a picture (width, height); columns in fours."""
+    return -(-size[1] // _CELL_PX), -(-size[0] // (4 * _CELL_PX)) * 4
+
+
 class SightFinder:
     """Picks the faces and outlines that are seen, on the CPU (sight/sight.c): for a software rasteriser, which shades
     hidden faces like others, a third of the work of drawing them."""
@@ -81,12 +102,13 @@ class SightFinder:
     def __init__(self, vertices: int, triangle: NDArray[np.int32], first: Sequence[int], edges: Edges) -> None:
         """triangle (t, 3); first: the first triangle of each run."""
         machine = Machine(_MODULE)
-        self._machine, self._find = machine, machine.function("find", "11I6If")
+        self._machine, self._find = machine, machine.function("find", "12I6If")
         kept = (triangle, edges.adjacency, edges.face, np.array(first, dtype=np.int32))
         self._given = [machine.kept(array, np.int32) for array in kept]
         self._clip = machine.block((vertices, 4), np.float32)
         self._places = [machine.block((vertices, 3), np.float32), machine.block(len(triangle), np.uint8)]
         self._grid = machine.block((0, 0), np.float32)
+        self._scene: tuple[NDArray[np.float32], Block] | None = None
         self._triangle = machine.block(triangle.shape, np.int32)
         self._line = machine.block(edges.adjacency.shape, np.int32)
         self._count = machine.block(len(first) + 1, np.int32)
@@ -96,18 +118,24 @@ class SightFinder:
         """(v, 4): where the vertices are, in clip coordinates; to be written before looking."""
         return self._clip.data
 
+    def stand_behind(self, scene: NDArray[np.float32] | None) -> None:
+        """What is before the mesh from now on, as ``scene_cells`` tells it; None: nothing."""
+        if scene is None:
+            self._scene = None
+        elif self._scene is None or self._scene[0] is not scene:
+            self._scene = (scene, self._machine.kept(scene, np.float32))
+
     def look(
         self, vertices: int, triangles: int, edges: int, runs: int, size: tuple[int, int] | None, line_px: float = 0.0
     ) -> Sight:
         """Look at the first so many of each. ``size``: of the picture, whose hidden faces are left out, or None:
         they stay. ``line_px``: how far an outline reaches from its edge."""
-        rows, columns = 0, 0
-        if size is not None:
-            columns, rows = -(-size[0] // (4 * _CELL_PX)) * 4, -(-size[1] // _CELL_PX)
+        rows, columns = (0, 0) if size is None else _grid_shape(size)
         if self._grid.data.shape != (rows, columns):
             self._grid = self._machine.block((rows, columns), np.float32)
-        blocks = [self._clip, *self._given, *self._places, self._grid, self._triangle, self._line, self._count]
-        addresses = [block.address for block in blocks]
-        self._find(*addresses, vertices, triangles, edges, runs, columns, rows, line_px / _CELL_PX)
+        scene = self._scene[1].address if self._scene is not None and self._scene[0].shape == (rows, columns) else 0
+        before = [block.address for block in (self._clip, *self._given, *self._places, self._grid)]
+        after = [block.address for block in (self._triangle, self._line, self._count)]
+        self._find(*before, scene, *after, vertices, triangles, edges, runs, columns, rows, line_px / _CELL_PX)
         *counts, lines = self._count.data[: runs + 1].tolist()
         return Sight(self._triangle.data[: sum(counts)], tuple(counts), self._line.data[:lines])

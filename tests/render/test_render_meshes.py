@@ -22,7 +22,7 @@ from game.render.model import (
     merge_character,
     merge_static,
 )
-from game.render.silhouette import Sight, SightFinder, find_edges
+from game.render.silhouette import Sight, SightFinder, find_edges, scene_cells
 
 CLOTH = Material("coat", "cloth", (0.2, 0.4, 0.5), (0.1, 0.2, 0.4), (0.1, 0.1, 0.3))
 
@@ -101,6 +101,28 @@ def test_a_slit_of_two_pixels_shows_what_is_behind() -> None:
     assert seen(left, right, (0.0, 0.0, 0.9, 0.4)) == {0, 1, 2}
     closed = (0.5, 0.0, 1.0, 0.5)
     assert seen((-0.5, 0.0, 1.0, 0.5), closed, (0.0, 0.0, 0.9, 0.4)) == {0, 1}
+
+
+def test_what_the_scene_hides_is_left_out_and_what_looks_over_it_stays() -> None:
+    """A wall two metres before the square; the depth is that of a picture of 640 × 360, first row at the bottom."""
+    projection = Camera((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 40.0).projection(16 / 9)
+    wall = (-projection[2, 2] + projection[2, 3] / 4.0) * 0.5 + 0.5
+    position, triangle = squares((0.0, 0.0, 0.0, 0.5))
+    finder = SightFinder(4, triangle, [0], find_edges(position, triangle, np.ones(4, np.float32)))
+    finder.clip[:] = clip_of(cast(CharacterMesh, SimpleNamespace(position=position)))
+    for height, wanted in ((360, 0), (180, 2), (0, 2)):
+        depth = np.ones((360, 640), np.float32)
+        depth[:height] = wall
+        cells = scene_cells(depth, projection)
+        if height:
+            assert cells.max() == pytest.approx(0.25, rel=1e-4)
+        finder.stand_behind(cells)
+        assert len(finder.look(4, 2, 5, 1, (640, 360), 2.0).triangle) == wanted
+    finder.stand_behind(scene_cells(np.full((360, 640), wall, np.float32), projection))
+    assert len(finder.look(4, 2, 5, 1, (640, 360), 2.0).line) == 0
+    assert len(finder.look(4, 2, 5, 1, (320, 180), 2.0).triangle) == 2, "of another picture"
+    finder.stand_behind(None)
+    assert len(finder.look(4, 2, 5, 1, (640, 360), 2.0).triangle) == 2
 
 
 def test_outlines_of_hidden_faces_are_left_out() -> None:

@@ -23,6 +23,7 @@ typedef struct {
     Place *place; // by vertex
     uint8_t *side; // by triangle: a Side
     float *grid; // nearest front face by cell; empty: 0
+    const float *scene; // what stands before the mesh, in the same way; none: null
     int32_t (*shown)[3]; // out: triangles to draw, run by run
     int32_t (*line)[4]; // out: edges to draw
     int32_t *count; // out: triangles to draw by run, then edges to draw
@@ -149,7 +150,9 @@ EXPORT(find) {
         float near = 1.0f / clip[3];
         job->place[i] = (Place){(clip[0] * near + 1.0f) * half_width, (clip[1] * near + 1.0f) * half_height, near};
     }
-    if (hide) memset(job->grid, 0, (size_t)(job->columns * job->rows) * sizeof(float));
+    size_t grid_bytes = (size_t)(job->columns * job->rows) * sizeof(float);
+    if (job->scene) memcpy(job->grid, job->scene, grid_bytes);
+    else memset(job->grid, 0, grid_bytes);
     for (int32_t i = 0; i < job->triangles; i++) {
         const int32_t *corner = job->triangle[i];
         job->side[i] = side_of(job, corner);
