@@ -117,8 +117,6 @@ class Machine:
         lacking = self._end - self._memory.data_len(self._store)
         if lacking > 0:
             self._memory.grow(self._store, max(-(-lacking // _PAGE), 16))
-            # Addresses are reserved beforehand, so views stay where they are.
-            assert ctypes.addressof(self._memory.data_ptr(self._store).contents) == self._origin
         return address
 
 
@@ -162,7 +160,9 @@ class _Compiling(threading.Thread):
 
     def __init__(self, path: Path) -> None:
         super().__init__(daemon=True, name=f"compiling {path.name}")
-        self._path, self._engine = path, wasmtime.Engine()
+        config = wasmtime.Config()
+        config.memory_may_move = False  # NumPy looks at it: it grows into room that is reserved
+        self._path, self._engine = path, wasmtime.Engine(config)
         self._module: wasmtime.Module | None = None
         self._reason = ""
         self.start()

@@ -1,9 +1,6 @@
 // Many ticks of characters that each have a clock of their own, where all that reaches them is known beforehand.
 #include "plan.h"
 
-// Arrays are copied by one instruction.
-#pragma clang attribute push(__attribute__((target("bulk-memory"))), apply_to = function)
-
 // A tick that is told of, see Told.
 typedef struct {
     int64_t row, unit[LAYERS];
@@ -84,5 +81,3 @@ EXPORT(follow) {
         }
     }
 }
-
-#pragma clang attribute pop

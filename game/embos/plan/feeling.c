@@ -1,9 +1,6 @@
 // What a change of emotion changes: φ_state of eq. 1, the mixing of eq. 5, and waits that a strong feeling shortens.
 #include "plan.h"
 
-// Arrays are copied by one instruction.
-#pragma clang attribute push(__attribute__((target("bulk-memory"))), apply_to = function)
-
 // Differences d closer than this are equal in rank.
 static const double STEPS = 0x1p40;
 enum { PLACE_BITS = 10 };  // MOST_UNITS
@@ -124,5 +121,3 @@ void settle(const Tables *t, Character *c, double time_s) {
     }
     memcpy(c->settled, c->emotion, sizeof c->settled);
 }
-
-#pragma clang attribute pop

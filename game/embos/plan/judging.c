@@ -1,9 +1,6 @@
 // Eq. 1 for one character, and what follows from it.
 #include "plan.h"
 
-// Arrays are copied by one instruction.
-#pragma clang attribute push(__attribute__((target("bulk-memory"))), apply_to = function)
-
 // The running slot stays although another has the best score.
 static bool kept(const Tables *t, int layer, int64_t mine, int64_t best, bool held, Factors *f) {
     const double *score = factor(t, f, SCORE);
@@ -122,5 +119,3 @@ void decide(const Tables *t, Character *c, double time_s, double now_s, Factors 
     for (int layer = 0; layer < LAYERS; layer++)
         if (c->started[layer]) begin(t, c, layer, f->chosen[layer], time_s, now_s);
 }
-
-#pragma clang attribute pop

@@ -1,9 +1,6 @@
 // A tick of all characters, and the factors behind it.
 #include "plan.h"
 
-// Arrays are copied by one instruction.
-#pragma clang attribute push(__attribute__((target("bulk-memory"))), apply_to = function)
-
 // Every function's parameters. signal: for each character emotion[7], words[G]; times_s: of each, weigh only.
 typedef struct {
     double time_s, dt_s;
@@ -93,5 +90,3 @@ EXPORT(weigh) {
         evaluate(t, c, moment(t, call->times_s[row], call->dt_s), &call->habit, f);
     }
 }
-
-#pragma clang attribute pop
