@@ -32,7 +32,15 @@ def open_face(desk: VirtualScreen, *words: str) -> None:
 def test_authoring_drag_take_name_and_save(desk: VirtualScreen) -> None:
     out = desk.folder / "named.yaml"
     open_face(desk, "--save-to", str(out))
-    steps = ["mousemove 105 120 mousedown 1", "mousemove 45 70", "mouseup 1", "key 2", "key ctrl+s", "sleep 1", "key ctrl+a"]
+    steps = [
+        "mousemove 105 120 mousedown 1",
+        "mousemove 45 70",
+        "mouseup 1",
+        "key 2",
+        "key ctrl+s",
+        "sleep 1",
+        "key ctrl+a",
+    ]
     desk.until(out.exists, "the file", steps=(*steps, "type --delay 40 from_a_test", "key Return"))
     found = load_expressions(out, load_face().model.parts)
     assert list(found) == ["from_a_test"]
