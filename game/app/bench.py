@@ -75,10 +75,10 @@ def autoplay(inkjs: Path | None = None) -> list[Row]:
 
 def first_frame() -> None:
     """What a start of the game does up to the first finished frame, without a display."""
+    gc.disable()  # as game.app.cli.main
     from game.app.play import Window, open_session
     from game.render import Device
 
-    gc.disable()
     args = argparse.Namespace(language="en", stall="flea", seed=1, mode="full", overlay=False)
     device = Device.headless(1280, 720)
     window = Window(open_session(args), device)

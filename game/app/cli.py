@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import os
 import sys
@@ -59,7 +60,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     if not words or (words[0].startswith("-") and words[0] not in {"-h", "--help"}):
         words.insert(0, "play")
+    # What is imported stays: looking for garbage among it would take a twentieth of the start.
+    gc.disable()
     args = build_parser(words[0]).parse_args(words)
+    gc.enable()
     try:
         return int(args.run(args))
     except GameError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -37,7 +37,7 @@ class Node:
     value: Scalar = None
     raw: str = ""
     _items: tuple[Node, ...] = ()
-    _pairs: dict[str, tuple[Node, Node]] = field(default_factory=dict)
+    _pairs: Mapping[str, tuple[Node, Node]] = field(default_factory=dict)
 
     # --- structure -------------------------------------------------------------------------------------------
     def keys(self) -> list[Node]:

@@ -11,7 +11,9 @@ arrive, nothing recurses, and a hostile file is given up at its first offence.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import yaml
@@ -26,6 +28,8 @@ __all__ = ["Node", "load_yaml", "nearest", "parse_yaml"]
 _LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 _CORE = "tag:yaml.org,2002:"
+_TEXT_TAGS = ("!", _CORE + "str")
+_NO_PAIRS: Mapping[str, tuple[Node, Node]] = MappingProxyType({})
 _INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
 _FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
 _SPECIAL_FLOAT = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
@@ -84,7 +88,7 @@ class _Builder:
         if isinstance(event, yaml.ScalarEvent):
             self._check(event)
             self._add(self._scalar(event))
-        elif isinstance(event, yaml.MappingStartEvent | yaml.SequenceStartEvent):
+        elif isinstance(event, yaml.CollectionStartEvent):
             self._check(event)
             kind: Kind = "mapping" if isinstance(event, yaml.MappingStartEvent) else "sequence"
             if event.tag not in (None, "!", _CORE + ("map" if kind == "mapping" else "seq")):
@@ -98,7 +102,7 @@ class _Builder:
             if self.stack and self.stack[-1].wants_key:
                 raise BadInput(where=self._where(event), expected="a text key", seen=Plain(f"a {kind} as key"))
             self.stack.append(_Open(kind, self._where(event)))
-        elif isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
+        elif isinstance(event, yaml.CollectionEndEvent):
             done = self.stack.pop()
             if done.kind == "mapping":
                 self._add(Node(done.where, "mapping", _pairs=done.pairs))
@@ -125,19 +129,18 @@ class _Builder:
             raise BadInput(where=self._where(event), expected=f"at most {self.max_nodes} values", seen=Plain("more"))
 
     def _scalar(self, event: yaml.ScalarEvent) -> Node:
-        where, text = self._where(event), event.value
-        plain = event.implicit[0]
-        if event.tag in (None, "!", _CORE + "str"):
-            if not plain or event.tag is not None:
-                return Node(where, "scalar", text, text)
+        where, text, tag = self._where(event), event.value, event.tag
+        if tag is None or tag in _TEXT_TAGS:
+            if tag is not None or not event.implicit[0]:
+                return Node(where, "scalar", text, text, (), _NO_PAIRS)
             value = _resolve(text, where)
         else:
             value = _resolve(text, where)
-            if event.tag != _CORE + _TAG_OF[type(value)]:
+            if tag != _CORE + _TAG_OF[type(value)]:
                 raise BadInput(
-                    f"tag {str(event.tag)[:60]!r} does not fit or is not allowed", where=where, hint="leave it out"
+                    f"tag {str(tag)[:60]!r} does not fit or is not allowed", where=where, hint="leave it out"
                 )
-        return Node(where, "null" if value is None else "scalar", value, text)
+        return Node(where, "null" if value is None else "scalar", value, text, (), _NO_PAIRS)
 
     def _add(self, node: Node) -> None:
         if not self.stack:
@@ -184,10 +187,8 @@ def _resolve(text: str, where: Where) -> Scalar:
     """A plain scalar by the YAML 1.2 core schema (section 10.3.2)."""
     if text in _NULLS:
         return None
-    if text in _BOOLEANS:
-        return _BOOLEANS[text]
     if text[0] not in "+-.0123456789":
-        return text
+        return _BOOLEANS.get(text, text)
     if _INT.fullmatch(text):
         if len(text) > _MAX_DIGITS:
             raise BadInput(where=where, expected=f"a number of at most {_MAX_DIGITS} digits", seen=text)

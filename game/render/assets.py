@@ -120,7 +120,8 @@ def load_picture(path: Path) -> NDArray[np.uint8]:
         surface = pygame.image.load(io.BytesIO(data), "x.png" if data.startswith(b"\x89PNG") else "x.jpg")
     except (pygame.error, OSError, ValueError, SystemError) as error:
         raise BadInput(f"unreadable picture: {error}", where=Where(path)) from error
-    return np.ascontiguousarray(pygame.surfarray.array3d(surface).transpose(1, 0, 2))
+    pixels = np.frombuffer(pygame.image.tobytes(surface, "RGB"), dtype=np.uint8)
+    return pixels.reshape(surface.get_height(), surface.get_width(), 3)
 
 
 def save_png(path: Path, pixels: NDArray[np.uint8]) -> None:
