@@ -62,8 +62,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         words.insert(0, "play")
     # What is imported stays: looking for garbage among it would take a twentieth of the start.
     gc.disable()
-    args = build_parser(words[0]).parse_args(words)
-    gc.enable()
+    try:
+        args = build_parser(words[0]).parse_args(words)
+    finally:
+        gc.enable()
     try:
         return int(args.run(args))
     except GameError as error:

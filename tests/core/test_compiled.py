@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import wasmtime
+from wasmtime import _bindings
 
 from game.core.compiled import Machine, compile_ahead
 from game.core.errors import MissingPart
@@ -112,6 +113,29 @@ def test_what_a_function_runs_into_is_told(machine: Machine) -> None:
             double(8, 1 << 31, block.address)
         double(8, block.address, block.address)
     assert block.data.tolist() == [4.0] * 8
+
+
+@pytest.mark.parametrize("gone", [(_bindings, "wasmtime_func_call"), (wasmtime.Store, "_context")])
+def test_calls_do_not_need_what_the_package_keeps_to_itself(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch, gone: tuple[object, str]
+) -> None:
+    with monkeypatch.context() as lacking:
+        lacking.delattr(*gone)
+        double = machine.function("double", "III")
+    block = machine.kept(np.ones(4), np.float32)
+    calls: list[wasmtime.Func] = []
+    offered = wasmtime.Func.__call__
+
+    def counted(function: wasmtime.Func, store: wasmtime.Store) -> None:
+        calls.append(function)
+        offered(function, store)
+
+    monkeypatch.setattr(wasmtime.Func, "__call__", counted)
+    double(4, block.address, block.address)
+    assert block.data.tolist() == [2.0] * 4
+    assert len(calls) == 1
+    with pytest.raises(wasmtime.Trap, match="out of bounds"):
+        double(4, 1 << 31, block.address)
 
 
 def test_a_module_that_is_missing_or_broken_is_named_in_one_line(tmp_path: Path) -> None:
