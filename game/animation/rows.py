@@ -86,10 +86,7 @@ def take_rows(rotation: Floats, root: Floats) -> TakeRows:
     count = len(rotation)
     rotation = rotation.copy()
     rotation[:, _LEGS] = quat.IDENTITY
-    shift = np.empty((count, len(_UPPER), 3), dtype=rotation.dtype)
-    shift[:] = _UPPER_BODY.rest_translation
-    shift[:, 0] = root
-    position, turned = _UPPER_BODY.to_model(rotation[:, _UPPER], shift)
+    position, turned = _to_model(rotation[:, _UPPER], root)
     base = np.zeros((count, ch.CHANNELS), dtype=np.float32)
     base[:, ch.ROTATION] = _continuous(rotation).reshape(count, -1)
     base[:, ch.ROOT] = root
@@ -107,6 +104,22 @@ def take_rows(rotation: Floats, root: Floats) -> TakeRows:
     return TakeRows(base, wrist, _continuous(palm.reshape(count, -1, 4)).reshape(palm.shape))
 
 
+def _to_model(rotation: Floats, root: Floats) -> tuple[Floats, Floats]:
+    """Forward kinematics of the upper body: (F, J, 4) local and root (F, 3) -> (F, J, 3) and (F, J, 4) model space."""
+    # As Skeleton.to_model, joint by joint and each component's frames side by side: a third of the time for long takes.
+    local = np.ascontiguousarray(rotation.transpose(1, 2, 0))
+    turned = np.empty_like(local)
+    position = np.empty((len(local), 3, len(rotation)), dtype=local.dtype)
+    rest = _UPPER_BODY.rest_translation.astype(local.dtype)
+    turned[0], position[0] = local[0], root.T
+    for joint in range(1, len(local)):
+        above = int(_UPPER_BODY.parents[joint])
+        parent = turned[above].T
+        position[joint] = position[above] + quat.rotate(parent, rest[joint]).T
+        turned[joint] = quat.multiply(parent, local[joint].T).T
+    return position.transpose(2, 0, 1), turned.transpose(2, 0, 1)
+
+
 def _points_in_hand(side: str, position: Floats, turned: Floats) -> Floats:
     """(F, 4, 3) middle knuckle and the tips of middle, index and little finger, in the hand's frame."""
     hand = _INDEX[f"{side}Hand"]
@@ -119,10 +132,12 @@ def _points_in_hand(side: str, position: Floats, turned: Floats) -> Floats:
 
 def _continuous(q: Floats) -> Floats:
     """Signs of (F, J, 4) chosen so that neighbouring frames share a hemisphere."""
-    signs = np.ones((*q.shape[:2], 1), dtype=q.dtype)
+    q = q.copy()
     turns = np.einsum("fji,fji->fj", q[1:], q[:-1]) < 0.0
-    signs[1:, :, 0] -= 2.0 * (np.cumsum(turns, axis=0) & 1)
-    return np.asarray(q * signs)
+    for joint in np.flatnonzero(turns.any(axis=0)):
+        flipped = np.logical_xor.accumulate(turns[:, joint])
+        q[1:, joint][flipped] *= -1.0
+    return q
 
 
 def _moving_mean(rows: Rows, span: int) -> Rows:
