@@ -115,7 +115,7 @@ def _join(
     )
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=48)  # 32 KB each: enough for a face that changes, not for every face there is
 def _triangles(make_up: tuple[tuple[Shapes, Runs], ...]) -> Ints:
     """Read-only vertex numbers (m, 3) of passes of grids and strokes laid out one after the other."""
     pieces: list[Ints] = []
@@ -132,7 +132,7 @@ def _triangles(make_up: tuple[tuple[Shapes, Runs], ...]) -> Ints:
     return result
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=128)
 def _neighbours(runs: Runs) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
     """For the points of strokes laid end to end: the point before, the point after, the stroke's number."""
     size = np.concatenate([np.full(b, n) for b, n in runs])
