@@ -30,7 +30,7 @@ from game.animation.reach import LIMB, STRAIGHT, limb_table
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_FRONT_Z_M, TABLE_TOP_M
 
-__all__ = ["BODY_PART", "FIGURE_JOINT", "FIGURE_LIMB", "FIT", "NEEDED", "Fitting", "fit_to", "reference_places"]
+__all__ = ["BODY_PART", "FIGURE_JOINT", "FIGURE_LIMB", "FIT", "NEEDED", "Fitting", "fit_to"]
 
 Floats = NDArray[np.floating[Any]]
 
@@ -105,11 +105,6 @@ FIT = np.dtype(
         *((name, "<f4", 2) for name in _LIMITS),
     ]
 )  # fmt: skip
-
-
-def reference_places() -> dict[str, Floats]:
-    """Bone -> place (3,) in the reference's rest pose, metres."""
-    return dict(_REST)
 
 
 @dataclass(frozen=True, eq=False)

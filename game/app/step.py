@@ -317,18 +317,3 @@ def step(assets: StepAssets, world: World, intent: Intent = Intent()) -> World: 
     for stage in STAGES:
         world = stage(assets, world, intent)
     return replace(world, tick=world.tick + 1)
-
-
-def unit_names(assets: StepAssets, world: World, language: str = "en") -> list[tuple[str, int, str]]:
-    """(layer, index, title) of the active nodes, as in the paper's figure 6."""
-    library = assets.planner.library
-    return [
-        (library.units[i].layer, int(i), library.units[i].title(language))
-        for i in world.body.decisions.unit[0]
-        if i >= 0
-    ]
-
-
-def emotion_table(values: Floats) -> dict[str, float]:
-    """Names to values, for overlays and logs."""
-    return {name: float(v) for name, v in zip(EMOTIONS, values, strict=True)}

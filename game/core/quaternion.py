@@ -27,7 +27,6 @@ __all__ = [
     "normalize",
     "rotate",
     "slerp",
-    "swing_twist",
     "to_euler",
     "to_matrix",
 ]
@@ -217,11 +216,3 @@ def between(a: ArrayLike, b: ArrayLike) -> Floats:
         w > 1e-6, np.concatenate([np.cross(u, v), w], -1), np.concatenate([np.cross(u, other), np.zeros_like(w)], -1)
     )
     return normalize(q)
-
-
-def swing_twist(q: Floats, axis: ArrayLike) -> tuple[Floats, Floats]:
-    """Split q = swing · twist, the twist about the unit axis (3,)."""
-    a = np.asarray(axis, dtype=q.dtype)
-    along = (q[..., :3] * a).sum(-1, keepdims=True)
-    twist = normalize(np.concatenate([a * along, q[..., 3:]], -1))
-    return multiply(q, conjugate(twist)), twist

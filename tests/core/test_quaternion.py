@@ -116,16 +116,6 @@ def test_between_turns_one_direction_to_the_other_even_when_opposite():
     np.testing.assert_allclose(turned, b / np.linalg.norm(b, axis=-1, keepdims=True), atol=1e-6)
 
 
-def test_swing_twist_parts_make_the_whole():
-    q = some(40)
-    axis = np.array([1.0, 0.0, 0.0])
-    swing, twist = quat.swing_twist(q, axis)
-    same_rotation(quat.multiply(swing, twist), q)
-    np.testing.assert_allclose(np.cross(twist[:, :3], axis), 0, atol=1e-12)
-    # The swing's own axis is across the twist's.
-    np.testing.assert_allclose(swing[:, :3] @ axis, 0, atol=1e-9)
-
-
 def test_single_precision_stays_single():
     q = some(3).astype(np.float32)
     for result in (quat.multiply(q, q), quat.rotate(q, q[:, :3]), quat.normalize(q), quat.to_matrix(q)):
