@@ -16,6 +16,7 @@ __all__ = ["BOUND", "Closure", "arithmetic", "comparison", "constant", "joined",
 
 BOUND = 1e9
 """Every result of arithmetic is held to ± this."""
+_LEAST = -BOUND
 
 Closure = Callable[[Any], Any]
 """From a scope (``game.story.expressions.Scope``) to a value."""
@@ -48,7 +49,7 @@ def _divide(a: Closure, b: Closure) -> Closure:
 def _add_constant(name: str, number: float) -> Closure:
     def total(scope: Any) -> float:
         value: float = scope.names[name] + number
-        return value if -BOUND <= value <= BOUND else _held(value)
+        return value if _LEAST <= value <= BOUND else _held(value)
 
     return total
 
@@ -56,7 +57,7 @@ def _add_constant(name: str, number: float) -> Closure:
 def _multiply_constant(name: str, number: float) -> Closure:
     def product(scope: Any) -> float:
         value: float = scope.names[name] * number
-        return value if -BOUND <= value <= BOUND else _held(value)
+        return value if _LEAST <= value <= BOUND else _held(value)
 
     return product
 

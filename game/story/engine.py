@@ -5,25 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from game.core.errors import BadInput
-from game.story.beat import Beat, Choice, Chose, Event, Spoken, Start, Stimulus, Warp, timer_at
+from game.story.beat import Beat, Choice, Chose, Event, Outcome, Spoken, Start, Stimulus, Warp, timer_at
 from game.story.chance import Lots, uniforms
 from game.story.draw import draw_choices
 from game.story.expressions import Scope
 from game.story.filling import filled
 from game.story.model import BACK, HOME, Script
 from game.story.ready import ReadyChoice, ReadyEffect, ReadyGroup, ReadyLine, ReadyNode, Way, offered, spoken
-from game.story.standing import Log, StoryState
+from game.story.standing import StoryState
 from game.story.state import restore, save
 from game.story.text import Text
-from game.story.vocabulary import OUTCOMES, Value, environment
+from game.story.vocabulary import OUTCOMES, Value, checked
 
 __all__ = ["advance", "resume"]
 
 # A walk from one waiting place to the next passes far fewer nodes; the reader refuses scripts that could loop.
-_MAX_STEPS = 500
+_STEPS = range(500)
 _MAX_RETURNS = 16
 _DRAW_STREAM = 0x9E3779B9
 _AHEAD = 6
+# Every step makes a state and a beat: without the detour over the names of their fields, at half the price.
+_tuple = tuple.__new__
 
 
 def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, Value]) -> tuple[StoryState, Beat]:
@@ -33,24 +35,27 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     their default. Raises BadInput for an event that does not fit: a choice that is not offered, an unknown
     outcome, anything after the end.
     """
-    if state.ended is not None:
-        raise BadInput("talk", expected="one that goes on", seen=f"ended: {state.ended}")
-    if isinstance(event, Start) == state.started and not isinstance(event, Warp):
-        raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
-    run = _Run(script, state, env)
-    if isinstance(event, Chose):
-        outcome = None if event.outcome is None else _known(event.outcome, script)
-        run.walk(run.choose(event.choice), outcome)
-    elif isinstance(event, Start):
-        came_back = script.outcomes.get("came_back") if state.visit > 1 else None
-        run.walk(came_back or script.start, None)
+    if state.talk.ready.script is not script:
+        state = restore(script, save(state))
+    run = _Run(state, env)
+    if run.ended is not None:
+        raise BadInput("talk", expected="one that goes on", seen=f"ended: {run.ended}")
+    if isinstance(event, Chose) and run.started:
+        choice, outcome = event
+        run.walk(run.choose(choice), None if outcome is None else _known(outcome, script))
     elif isinstance(event, Warp):
         if event.node not in script.nodes:
             raise BadInput("node", expected=f"one of {script.stall}", seen=event.node)
         run.returns = ()
         run.walk(event.node, None)
+    elif isinstance(event, Start) == run.started:
+        raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
+    elif isinstance(event, Start):
+        came_back = script.outcomes.get("came_back") if state.visit > 1 else None
+        run.walk(came_back or script.start, None)
     else:
-        run.walk(state.node, _known(event.kind, script))
+        assert isinstance(event, Outcome)
+        run.walk(run.node, _known(event.kind, script))
     return run.result()
 
 
@@ -61,15 +66,18 @@ def resume(script: Script, state: StoryState, env: Mapping[str, Value]) -> tuple
     """
     if not state.started:
         return state, Beat("", (), (), (), None)
-    run = _Run(script, state, env)
+    if state.talk.ready.script is not script:
+        state = restore(script, save(state))
+    run = _Run(state, env)
     if state.ended is None and not any(run.usable(choice) for choice, _ in run.laid):
         run.wait_at(run.ready.node(state.node))
     else:
         run.lay(run.laid)
-    before = run.before
-    run.lines = tuple([run.spoken(run.ready.line(script.lines[name])) for name in before.last_lines])
+    last = run.heard[len(run.heard) - run.last :]
+    for line in last:
+        run.lines += run.spoken(run.ready.line(script.lines[line.id]))
     fresh, beat = run.result()
-    return fresh._replace(log=before.log), beat
+    return fresh._replace(lines=run.heard), beat
 
 
 def _known(kind: str, script: Script) -> str:
@@ -79,29 +87,35 @@ def _known(kind: str, script: Script) -> str:
 
 
 class _Run(Scope):
-    """The working copy of where a talk stands during one step. told: how the player's line landed, ``veiled`` where the
-    words hide it; nodes, lines, stimuli: what came in this step; options: the choices as the player sees them."""
+    """The working copy of where a talk stands during one step.
 
-    names: dict[str, Value]
+    told: how the player's line landed, ``veiled`` where the words hide it; offering: whether an offer went with it;
+    kept: what conditions and lines may use, without what the game says of this step; nodes, lines, stimuli: what came
+    in this step; passed, heard: all nodes and lines before it, of which ``last`` lines came in the step before;
+    options: the choices as the player sees them.
+    """
+
+    names: Mapping[str, Value]
+    kept: Mapping[str, Value]
     __slots__ = (
-        "ahead", "before", "counter", "ended", "laid", "lines", "node", "nodes", "options", "past", "ready", "returns",
-        "stimuli", "talk", "told", "turn", "variables",
+        "ahead", "counter", "ended", "heard", "kept", "laid", "last", "lines", "node", "nodes", "offering", "options",
+        "passed", "past", "ready", "returns", "started", "stimuli", "talk", "told", "turn",
     )  # fmt: skip
 
-    def __init__(self, script: Script, before: StoryState, env: Mapping[str, Value]) -> None:
-        if before.talk.ready.script is not script:
-            before = restore(script, save(before))
+    def __init__(self, before: StoryState, env: Mapping[str, Value]) -> None:
         (
-            talk, self.node, _, self.ended, self.counter, self.turn, self.returns, self.past, self.variables, self.laid,
-            _,
-        ) = self.before = before  # fmt: skip
-        self.talk, self.ready = talk, talk.ready
-        names = self.names = environment(env)
-        names.update(self.variables)
-        names.update(talk.names)
-        told = str(names["quality"]) if names["tells"] else "none"
-        self.told = "veiled" if told == "none" else told
-        self.ahead: list[float] = []
+            self.talk, self.node, self.started, self.ended, self.counter, self.turn, self.returns, self.past, kept,
+            self.laid, self.passed, self.heard, self.last,
+        ) = before  # fmt: skip
+        self.ready = self.talk.ready
+        self.names = self.kept = kept
+        self.told, self.offering = "veiled", False
+        if env:
+            names = self.names = {**kept, **checked(env), "item": kept["item"], "visit": kept["visit"]}
+            if names["tells"] and names["quality"] != "none":
+                self.told = str(names["quality"])
+            self.offering = names["offer_result"] != "none"
+        self.ahead: list[float] | None = None
         self.nodes: tuple[str, ...] = ()
         self.lines: tuple[Spoken, ...] = ()
         self.stimuli: tuple[Stimulus, ...] = ()
@@ -109,7 +123,7 @@ class _Run(Scope):
 
     # --- what conditions ask ---------------------------------------------------------------------------------
     def visits(self, node: str) -> int:
-        return self.before.visits.get(node, 0) + self.nodes.count(node)
+        return self.passed.count(node) + self.nodes.count(node)
 
     def seen(self, name: str) -> bool:
         return bool(self.everything & self.ready.script.bits.seen[name])
@@ -130,10 +144,15 @@ class _Run(Scope):
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
         """Take a choice: its words, effects and feelings; the node it leads to."""
-        choice, line = self.taken(choice_id)
+        for choice, line in self.laid:  # noqa: B007 - the one that is found
+            if choice.id == choice_id and (choice.always or self.usable(choice)):
+                break
+        else:
+            ids = " | ".join([choice.id for choice, _ in self.laid])
+            raise BadInput("choice", expected=ids or "none", seen=choice_id)
         if not choice.silent:
             self.say(line)
-        if choice.act != "offer" and self.names["offer_result"] != "none":
+        if self.offering and choice.act != "offer":
             # A line that carries an offer is followed by the words of an offer.
             offer = self.ready.offer(self.told)
             if offer is not None:
@@ -144,28 +163,18 @@ class _Run(Scope):
             self.apply(choice.effects)
         return choice.way or self.way(choice.ways)
 
-    def taken(self, choice_id: str) -> tuple[ReadyChoice, ReadyLine]:
-        """A choice on the table that can still be taken, and its wording."""
-        for laid in self.laid:
-            choice = laid[0]
-            if choice.id == choice_id and (choice.always or self.usable(choice)):
-                return laid
-        ids = " | ".join([choice.id for choice, _ in self.laid])
-        raise BadInput("choice", expected=ids or "none", seen=choice_id)
-
     def walk(self, target: str, pending: str | None) -> None:
         """Pass nodes until one waits for the player or the talk ends; ``pending`` is the market's outcome."""
         closing: str | None = None
         ready, told = self.ready, self.told
         passages = ready.passages[told]
-        for _ in range(_MAX_STEPS):
-            passage = passages.get(target) or ready.passage(self.resolved(target), told)
-            stretches, node = passage
+        for _ in _STEPS:
+            node, stretch = passages.get(target) or ready.passage(self.resolved(target), told)
             if pending is not None and node.halts:
                 ending = OUTCOMES[pending]
                 if node.waits or ending:
                     # The market's answer comes after the reaction and before the talk goes on.
-                    outcome_node = self.ready.script.outcomes.get(pending)
+                    outcome_node = ready.script.outcomes.get(pending)
                     if ending:
                         closing, self.returns = pending, ()
                     elif outcome_node is not None:
@@ -177,7 +186,8 @@ class _Run(Scope):
             if closing is not None and node.waits:
                 break
             self.node = node.id
-            for nodes, lines, past, stimuli, effects, says in stretches:
+            while stretch is not None:
+                nodes, lines, past, stimuli, effects, says, stretch = stretch
                 self.nodes += nodes
                 self.past |= past
                 if lines:
@@ -186,9 +196,10 @@ class _Run(Scope):
                     self.stimuli += stimuli
                 if effects:
                     self.apply(effects)
-                for test, group in says:
-                    if test is None or test(self):
-                        self.say_one(group)
+                if says:
+                    for test, group in says:
+                        if test is None or test(self):
+                            self.say_one(group)
             if not node.halts:
                 if node.call is None:
                     target = node.way or self.way(node.ways)
@@ -198,14 +209,18 @@ class _Run(Scope):
             elif node.end is not None:
                 self.ended = node.end
                 return
-            elif self.wait_at(node) or node.id == self.ready.script.home:
+            elif node.table is not None:
+                self.turn += 1
+                self.laid, self.options = node.table
+                return
+            elif self.wait_at(node) or node.id == ready.script.home:
                 return
             else:
                 target = HOME
         if closing is not None:
             self.ended = closing
         else:
-            self.node = self.ready.script.home
+            self.node = ready.script.home
             self.wait_at(ready.node(self.node))
 
     def resolved(self, target: str) -> str:
@@ -230,10 +245,11 @@ class _Run(Scope):
         return HOME
 
     def apply(self, effects: Sequence[ReadyEffect]) -> None:
-        names, variables = self.names, dict(self.variables)
+        kept = {**self.kept}
+        names = self.names = kept if self.names is self.kept else {**self.names}
+        self.kept = kept
         for name, value in effects:
-            names[name] = variables[name] = value(self)
-        self.variables = variables
+            names[name] = kept[name] = value(self)
 
     # --- speaking --------------------------------------------------------------------------------------------
     def say_one(self, group: ReadyGroup) -> None:
@@ -245,20 +261,16 @@ class _Run(Scope):
         else:
             lots = group.left(self.past, self.talk.earlier_bits).usable(self)
             if group.recalls:
-                lots = group.least_heard(lots, self.times_heard)
+                lots = group.least_heard(lots, [line.id for line in (*self.heard, *self.lines)])
             if lots.items:
                 self.say(lots.only or lots.draw(self.chance()))
-
-    def times_heard(self, name: str) -> int:
-        """How often a line was said in this talk."""
-        return self.before.heard.get(name, 0) + [line.id for line in self.lines].count(name)
 
     def say(self, line: ReadyLine) -> None:
         if not self.past & line.bit:
             self.past |= line.bit
         elif not line.again:
             return
-        self.lines += (line.fixed or self.spoken(line),)
+        self.lines += line.fixed or self.spoken(line)
         if line.stimulus is not None:
             self.stimuli += (line.stimulus,)
 
@@ -266,13 +278,13 @@ class _Run(Scope):
         """Whether a line fits how the player's line landed, and its condition holds."""
         return line.when in (None, self.told) and (line.test is None or bool(line.test(self)))
 
-    def spoken(self, line: ReadyLine) -> Spoken:
+    def spoken(self, line: ReadyLine) -> tuple[Spoken, ...]:
+        """A line with its words filled in."""
         key = tuple([self.names.get(name) for name in line.asks])
         known = line.spoken.get(key)
         if known is None:
-            known = spoken(line.line, self.filled(line.line.text))
-            line.spoken.keep(key, known)
-            line.fixed = None if line.asks else known
+            known = line.spoken.keep(key, (spoken(line.line, self.filled(line.line.text)),))
+            line.fixed = () if line.asks else known
         return known
 
     def filled(self, text: Text, *, keep: str = "") -> Text:
@@ -355,10 +367,9 @@ class _Run(Scope):
             self.laid, self.options = (), ()
         elif self.node in self.ready.timers:
             timed = timer_at(self.ready.timers[self.node], self.options)
-        # Every step makes one of each: without the detour over the names of the fields, at half the price.
-        fresh = tuple.__new__(StoryState, (
-            self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.past, self.variables,
-            self.laid, Log(self.talk, self.before.log, self.nodes, self.lines),
+        fresh = _tuple(StoryState, (
+            self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.past, self.kept,
+            self.laid, self.passed + self.nodes, self.heard + self.lines, len(self.lines),
         ))  # fmt: skip
-        beat = tuple.__new__(Beat, (self.node, self.lines, self.options, self.stimuli, self.ended, timed))
+        beat = _tuple(Beat, (self.node, self.lines, self.options, self.stimuli, self.ended, timed))
         return fresh, beat

@@ -10,7 +10,7 @@ from game.story.model import ChoiceDef, LineDef, Script
 from game.story.prepared import prepared
 from game.story.ready import spoken
 from game.story.text import Text, fill
-from game.story.vocabulary import ENV, Value, environment
+from game.story.vocabulary import DEFAULTS, ENV, Value, checked
 
 __all__ = ["filled", "rehearse_choice", "rehearse_line"]
 
@@ -61,4 +61,4 @@ def rehearse_choice(script: Script, item: str, choice: ChoiceDef, line: LineDef,
 
 def _names(script: Script, item: str, env: Mapping[str, Value]) -> dict[str, Value]:
     start = {name: variable.initial for name, variable in script.variables.items()}
-    return {**environment(env), **start, "item": item}
+    return {**DEFAULTS, **checked(env), **start, "item": item}

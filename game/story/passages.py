@@ -14,7 +14,7 @@ __all__ = ["Passage", "Stretch", "passage_from"]
 
 class Stretch(NamedTuple):
     """Part of a passage. First what happens in any case: nodes passed and lines said, the bits of which are ``past``;
-    then the effects, then the groups of lines of which one each may be said."""
+    then the effects, then the groups of lines of which one each may be said; then what follows, None at the end."""
 
     nodes: tuple[str, ...] = ()
     lines: tuple[Spoken, ...] = ()
@@ -22,6 +22,7 @@ class Stretch(NamedTuple):
     stimuli: tuple[Stimulus, ...] = ()
     effects: tuple[ReadyEffect, ...] = ()
     says: tuple[ReadySay, ...] = ()
+    then: Stretch | None = None
 
     def after(self, node: ReadyNode) -> Stretch:
         """The same with a node passed as well, which nothing has been asked before."""
@@ -33,18 +34,16 @@ class Stretch(NamedTuple):
         """The same with a group of lines as well."""
         test, group = say
         line = None if test is not None or self.effects or self.says else group.only
-        if line is None or line.always is None:
+        if line is None or not line.always:
             return self._replace(says=(*self.says, say))
         stimuli = self.stimuli if line.stimulus is None else (*self.stimuli, line.stimulus)
-        return self._replace(lines=(*self.lines, line.always), past=self.past | line.bit, stimuli=stimuli)
+        return self._replace(lines=(*self.lines, *line.always), past=self.past | line.bit, stimuli=stimuli)
 
 
-class Passage(NamedTuple):
-    """Nodes that follow one another whatever holds. last: the one where the talk waits, ends or takes a turn; where
-    it waits or ends there, it is the only one, since the market's answer may come before it."""
-
-    stretches: tuple[Stretch, ...]
-    last: ReadyNode
+Passage = tuple[ReadyNode, Stretch | None]
+"""Nodes that follow one another whatever holds: the last one, where the talk waits, ends or takes a turn, and what
+happens up to and in it. Where the talk waits or ends there, it is the only one, since the market's answer may come
+before it."""
 
 
 def passage_from(
@@ -68,4 +67,7 @@ def passage_from(
         following = nodes(node.way) if goes_on else None
         if following is not None and (following.halts or following.id in passed):
             following = None
-    return Passage(tuple(stretches), node)
+    whole = stretches.pop()
+    while stretches:
+        whole = stretches.pop()._replace(then=whole)
+    return node, whole

@@ -82,9 +82,9 @@ class ReadyLine:
     """A line in talks about an item.
 
     bit: its place among everything said; test: what must hold, as far as the item does not settle it; always: the line
-    as it is said, where nothing can keep it from being said so. spoken, option: the line as it is said and as it is
-    offered, by the values of the names in its braces (``asks``; ``keeps`` in an option, where the amount of an offer is
-    left open); fixed, offered: where it has none.
+    as it is said, where nothing can keep it from being said so, else empty. spoken, option: the line as it is said and
+    as it is offered, by the values of the names in its braces (``asks``; ``keeps`` in an option, where the amount of an
+    offer is left open); fixed, offered: where it has none.
     """
 
     __slots__ = (
@@ -98,9 +98,9 @@ class ReadyLine:
         self.asks = tuple(sorted(line.text.names - _FIXED_NAMES))
         self.keeps = tuple([name for name in self.asks if name != "offer"])
         self.stimulus = Stimulus(line.feel, line.id) if line.feel else None
-        self.fixed = None if line.text.names else spoken(line, line.text)
-        self.always = self.fixed if line.again and test is None else None
-        self.spoken: Few[tuple[Value | None, ...], Spoken] = Few(_MOST_WORDS)
+        self.fixed: tuple[Spoken, ...] = () if line.text.names else (spoken(line, line.text),)
+        self.always = self.fixed if line.again and test is None else ()
+        self.spoken: Few[tuple[Value | None, ...], tuple[Spoken, ...]] = Few(_MOST_WORDS)
         self.offered: Choice | None = None
         self.option: Few[tuple[Value | None, ...], Choice] = Few(_MOST_WORDS)
 
@@ -178,9 +178,9 @@ class ReadyGroup:
             lines = [line for line in lines if not line.bit & earlier] or lines
         return lines[:1] if self.order == "listed" else lines
 
-    def least_heard(self, lots: Lots[ReadyLine], heard: Callable[[str], int]) -> Lots[ReadyLine]:
-        """Those heard least often in this talk. heard: how often, by id."""
-        times = [heard(line.id) for line in lots.items]
+    def least_heard(self, lots: Lots[ReadyLine], heard: Sequence[str]) -> Lots[ReadyLine]:
+        """Those heard least often in this talk. heard: the ids of all lines of it."""
+        times = [heard.count(line.id) for line in lots.items]
         return Lots([line for line, count in zip(lots.items, times, strict=True) if count == min(times)])
 
 

@@ -1,4 +1,4 @@
-"""Where a talk stands between two steps, as the next step works on it: whole numbers, tuples, and a log.
+"""Where a talk stands between two steps, as the next step works on it: whole numbers and tuples.
 
 What was said, chosen and passed is one number (``Script.bits``). Ids and counts are made of them when somebody
 looks, which most steps of most talks never do.
@@ -6,7 +6,9 @@ looks, which most steps of most talks never do.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from game.story.beat import Spoken
@@ -14,16 +16,17 @@ from game.story.bits import bits_of
 from game.story.model import LineDef, Script
 from game.story.prepared import Prepared, prepared
 from game.story.ready import Laid
-from game.story.vocabulary import Value
+from game.story.vocabulary import DEFAULTS, Value
 
-__all__ = ["Log", "StoryState", "Talk"]
+__all__ = ["StoryState", "Talk"]
 
 
-class Talk(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Talk:
     """What stays the same from the first step of a talk to its last.
 
-    earlier: everything seen on earlier visits, and ``earlier_bits`` what the script knows of it; names: those that mean
-    the same throughout; unknown_said, unknown_chosen: what was said and chosen, and the script does not know any more.
+    earlier: everything seen on earlier visits, and ``earlier_bits`` what the script knows of it; unknown_said,
+    unknown_chosen: what was said and chosen, and the script does not know any more.
     """
 
     ready: Prepared
@@ -31,7 +34,6 @@ class Talk(NamedTuple):
     visit: int
     earlier: frozenset[str]
     earlier_bits: int
-    names: Mapping[str, Value]
     unknown_said: frozenset[str]
     unknown_chosen: frozenset[str]
 
@@ -46,68 +48,12 @@ class Talk(NamedTuple):
         unknown_chosen: frozenset[str] = frozenset(),
     ) -> Talk:
         """A talk about an item of a script."""
-        names: dict[str, Value] = {"item": item, "visit": float(visit)}
-        earlier_bits = bits_of(script.bits.seen, earlier)
-        return Talk(prepared(script, item), seed, visit, earlier, earlier_bits, names, unknown_said, unknown_chosen)
+        earlier_bits = bits_of(script.bits.seen, earlier) if earlier else 0
+        return Talk(prepared(script, item), seed, visit, earlier, earlier_bits, unknown_said, unknown_chosen)
 
-
-Counts = tuple[Mapping[str, int], Mapping[str, int]]
-
-
-class Log:
-    """The nodes passed and the lines spoken so far, step by step; how often is counted when somebody asks."""
-
-    __slots__ = ("_before", "_counted", "_lines", "_nodes", "_talk")
-
-    def __init__(
-        self, talk: Talk, before: Log | None, nodes: tuple[str, ...] = (), lines: tuple[Spoken | LineDef, ...] = ()
-    ) -> None:
-        """nodes, lines: of the last step; before: the log up to there, None where there is none."""
-        self._talk, self._before, self._nodes, self._lines = talk, before, nodes, lines
-        self._counted: Counts | None = None
-
-    @staticmethod
-    def of(talk: Talk, visits: Mapping[str, int], heard: Mapping[str, int], last_lines: Sequence[LineDef]) -> Log:
-        """One that goes on from counts."""
-        log = Log(talk, None, (), tuple(last_lines))
-        log._counted = visits, heard
-        return log
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Log) and (self._counts(), self.last_lines) == (other._counts(), other.last_lines)
-
-    @property
-    def last_lines(self) -> tuple[str, ...]:
-        """The ids of the lines of the last step."""
-        return tuple([line.id for line in self._lines])
-
-    @property
-    def visits(self) -> Mapping[str, int]:
-        """How often each node was passed, in the order of the first times."""
-        return self._counts()[0]
-
-    @property
-    def heard(self) -> Mapping[str, int]:
-        """How often lines that may come again were said."""
-        return self._counts()[1]
-
-    def _counts(self) -> Counts:
-        if self._counted is None:
-            later, log = [self], self._before
-            while log is not None and log._counted is None:
-                later.append(log)
-                log = log._before
-            visits, heard = [dict(counts) for counts in (log._counted if log and log._counted else ({}, {}))]
-            known = self._talk.ready.script.lines
-            for step in reversed(later):
-                for name in step._nodes:
-                    visits[name] = visits.get(name, 0) + 1
-                for line in step._lines:
-                    if known[line.id].again:
-                        heard[line.id] = heard.get(line.id, 0) + 1
-            # What is counted need not be kept.
-            self._counted, self._before = (visits, heard), None
-        return self._counted
+    def names(self, variables: Mapping[str, Value]) -> dict[str, Value]:
+        """What conditions and lines may use, where the game does not say otherwise."""
+        return {**DEFAULTS, "item": self.ready.item, "visit": float(self.visit), **variables}
 
 
 class StoryState(NamedTuple):
@@ -115,7 +61,9 @@ class StoryState(NamedTuple):
 
     ``counter`` is the position in the stream of chance ``seed``; ``turn`` counts the waits; returns: nodes to come back
     to, innermost last, ``after:NODE`` meaning the way on from NODE; past: the bits of what was said, chosen and passed;
-    laid: the choices on the table, each with its wording.
+    names: the script's variables, and what the names of ``ENV`` mean where the game does not say; laid: the choices on
+    the table, each with its wording; nodes, lines: all that were passed and spoken, in order, of the lines ``last`` in
+    the last step. States are the same where each came as often, in whatever order.
     """
 
     talk: Talk
@@ -126,17 +74,38 @@ class StoryState(NamedTuple):
     turn: int
     returns: tuple[str, ...]
     past: int
-    variables: Mapping[str, Value]
+    names: Mapping[str, Value]
     laid: Laid
-    log: Log
+    nodes: tuple[str, ...]
+    lines: tuple[Spoken | LineDef, ...]
+    last: int
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, StoryState):
+            return NotImplemented
+        return self[:-3] == other[:-3] and self._counts() == other._counts()
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    def __hash__(self) -> int:
+        return hash(self[:-3])
+
+    def _counts(self) -> tuple[Mapping[str, int], Mapping[str, int], tuple[str, ...]]:
+        return Counter(self.nodes), Counter([line.id for line in self.lines]), self.last_lines
 
     def with_seed(self, seed: int) -> StoryState:
         """The same with other chance from here on."""
-        return self._replace(talk=self.talk._replace(seed=seed))
+        return self._replace(talk=replace(self.talk, seed=seed))
 
     def with_variable(self, name: str, value: Value) -> StoryState:
         """The same with another value of one of its variables."""
-        return self._replace(variables={**self.variables, name: value})
+        return self._replace(names={**self.names, name: value})
+
+    @property
+    def variables(self) -> dict[str, Value]:
+        """The values of the script's variables."""
+        return {name: self.names[name] for name in self.script.variables}
 
     @property
     def script(self) -> Script:
@@ -171,7 +140,7 @@ class StoryState(NamedTuple):
     @property
     def visits(self) -> Mapping[str, int]:
         """How often each node was passed, in the order of the first times."""
-        return self.log.visits
+        return Counter(self.nodes)
 
     @property
     def said(self) -> frozenset[str]:
@@ -186,7 +155,8 @@ class StoryState(NamedTuple):
     @property
     def heard(self) -> Mapping[str, int]:
         """How often lines that may come again were said."""
-        return self.log.heard
+        known = self.script.lines
+        return Counter([line.id for line in self.lines if known[line.id].again])
 
     @property
     def offered(self) -> tuple[tuple[str, str], ...]:
@@ -196,4 +166,4 @@ class StoryState(NamedTuple):
     @property
     def last_lines(self) -> tuple[str, ...]:
         """The ids of the lines of the last step."""
-        return self.log.last_lines
+        return tuple([line.id for line in self.lines[len(self.lines) - self.last :]])

@@ -3,20 +3,22 @@ script can still make sense of."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from game.core.errors import BadInput, Where
 from game.story.bits import bits_of
-from game.story.model import Script
-from game.story.standing import Log, StoryState, Talk
+from game.story.model import LineDef, Script
+from game.story.standing import StoryState, Talk
 from game.story.vocabulary import OUTCOMES, Value
 
 __all__ = ["Memory", "afternoon_of", "begin", "memory_of", "restore", "save"]
 
 SAVE_VERSION = 1
 _MAX_ENTRIES = 20_000
+_MOST_COUNTED = 1_000_000
 _MAX_INT = 1 << 53
 _NOTHING: frozenset[str] = frozenset()
 
@@ -57,19 +59,19 @@ def begin(
     visits, seen, kept = (0, _NOTHING, {}) if memory is None else (memory.visits, memory.seen, memory.variables)
     variables = _variables(script, {**kept, **(afternoon or {})}, scopes=("stall", "afternoon"))
     talk = Talk.about(script, item, seed & (_MAX_INT - 1), visits + 1, seen)
-    return StoryState(talk, "", False, None, 0, 0, (), 0, variables, (), Log(talk, None))
+    return StoryState(talk, "", False, None, 0, 0, (), 0, talk.names(variables), (), (), (), 0)
 
 
 def memory_of(script: Script, state: StoryState) -> Memory:
     """What the stall keeps of this talk and those before it."""
     seen = state.earlier | state.said | state.chosen | state.visits.keys()
-    kept = {name: state.variables[name] for name, v in script.variables.items() if v.scope == "stall"}
+    kept = {name: state.names[name] for name, v in script.variables.items() if v.scope == "stall"}
     return Memory(state.visit, seen, kept)
 
 
 def afternoon_of(script: Script, state: StoryState) -> dict[str, Value]:
     """The variables that all stalls share, as this talk leaves them."""
-    return {name: state.variables[name] for name, v in script.variables.items() if v.scope == "afternoon"}
+    return {name: state.names[name] for name, v in script.variables.items() if v.scope == "afternoon"}
 
 
 def save(state: StoryState) -> dict[str, Any]:
@@ -91,7 +93,7 @@ def save(state: StoryState) -> dict[str, Any]:
         "chosen": sorted(state.chosen),
         "heard": dict(sorted(state.heard.items())),
         "earlier": sorted(state.earlier),
-        "variables": dict(state.variables),
+        "variables": state.variables,
         "offered": [list(pair) for pair in state.offered],
         "last_lines": list(state.last_lines),
     }
@@ -123,6 +125,8 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
     bits = script.bits
     unknown = said - bits.lines.keys(), chosen - bits.choices.keys()
     talk = Talk.about(script, item, reader.whole("seed"), reader.whole("visit"), earlier, *unknown)
+    heard = reader.counts("heard") if "heard" in data else {}
+    last = [script.lines[name] for name in reader.texts("last_lines") if name in script.lines]
     state = StoryState(
         talk,
         node=node,
@@ -132,16 +136,23 @@ def restore(script: Script, data: Any, where: Where | None = None) -> StoryState
         turn=reader.whole("turn"),
         returns=tuple(name for name in reader.texts("returns") if name in known)[-16:],
         past=bits_of(bits.lines, said) | bits_of(bits.choices, chosen) | bits_of(bits.nodes, visits),
-        variables=_variables(script, reader.values("variables")),
+        names=talk.names(_variables(script, reader.values("variables"))),
         laid=(),
-        log=Log.of(
-            talk,
-            visits,
-            reader.counts("heard") if "heard" in data else {},
-            [script.lines[name] for name in reader.texts("last_lines") if name in script.lines],
-        ),
+        nodes=tuple(Counter(visits).elements()),
+        lines=_lines(script, said, heard, last),
+        last=len(last),
     )
     return _fitted(script, state, reader.pairs("offered"))
+
+
+def _lines(
+    script: Script, said: Iterable[str], heard: Mapping[str, int], last: Sequence[LineDef]
+) -> tuple[LineDef, ...]:
+    """What was spoken, as often as a save says; the last lines last. heard: how often, of lines that may come again."""
+    known = [script.lines[name] for name in said if name in script.lines]
+    often = Counter({line.id: heard.get(line.id, 1) if line.again else 1 for line in known})
+    before = often - Counter([line.id for line in last])
+    return (*[script.lines[name] for name in before.elements()], *last)
 
 
 def _fitted(script: Script, state: StoryState, offered: Iterable[tuple[str, str]]) -> StoryState:
@@ -225,6 +236,8 @@ class _SaveReader:
         value = self.mapping(key)
         if not all(type(item) is int and 0 <= item < _MAX_INT for item in value.values()):
             raise self.error(key, "whole numbers by node")
+        if sum(value.values()) > _MOST_COUNTED:
+            raise self.error(key, f"at most {_MOST_COUNTED} in all")
         return value
 
     def values(self, key: str) -> dict[str, Value]:

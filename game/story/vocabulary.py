@@ -12,6 +12,7 @@ from game.core.errors import BadInput
 
 __all__ = [
     "ACTS",
+    "DEFAULTS",
     "ENV",
     "OPTIONAL_OUTCOMES",
     "OUTCOMES",
@@ -22,7 +23,7 @@ __all__ = [
     "Environment",
     "Type",
     "Value",
-    "environment",
+    "checked",
 ]
 
 Value = float | bool | str
@@ -98,14 +99,11 @@ class Environment(dict[str, Value]):
     """Names of ENV whose values are known to have the right types: what the game itself works out."""
 
 
-def environment(env: Mapping[str, Value]) -> dict[str, Value]:
-    """The names of ENV as plain Python values, defaults where they are missing. Raises BadInput for a wrong type."""
-    out = _DEFAULTS.copy()
-    if not env:
-        return out
+def checked(env: Mapping[str, Value]) -> Mapping[str, Value]:
+    """The names of ENV that are given, as plain Python values. Raises BadInput for a wrong type."""
     if isinstance(env, Environment):
-        out.update(env)
-        return out
+        return env
+    out: dict[str, Value] = {}
     for name, value in env.items():
         kind = _KINDS.get(name)
         if kind is None:
@@ -127,5 +125,6 @@ def environment(env: Mapping[str, Value]) -> dict[str, Value]:
     return out
 
 
-_DEFAULTS: dict[str, Value] = {name: known.default for name, known in ENV.items()}
+DEFAULTS: Mapping[str, Value] = {name: known.default for name, known in ENV.items()}
+"""What the names of ENV stand for where the game does not say."""
 _KINDS: Mapping[str, Type] = {name: known.type for name, known in ENV.items()}

@@ -286,6 +286,8 @@ def test_saves_survive_edits_of_the_script(tiny, tiny_text, tmp_path):
         ("started", "yes", "/started"),
         ("ended", 3, "/ended"),
         ("visits", {"hub": -2}, "/visits"),
+        ("visits", {"hub": 2**40}, "/visits"),
+        ("heard", {"hello_1": 2**40}, "/heard"),
         ("said", "hello_1", "/said"),
         ("said", [1], "/said"),
         ("offered", [["a"]], "/offered"),
@@ -417,7 +419,7 @@ def test_a_thousand_random_moves_stay_on_the_rails(talk, tiny):
 
 
 def test_a_state_is_the_same_with_its_ids_as_with_its_bits(tiny):
-    """What a step keeps as bits and as a log is told as ids and counts; a state made of those plays on the same way."""
+    """what a step keeps as bits and in order is told as ids and counts; a state made of those plays on the same way."""
     state, beat = advance(tiny, begin(tiny, "cup", 3), Start(), {})
     for turn in range(3):
         copy = restore(tiny, save(state))
