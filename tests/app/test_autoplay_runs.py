@@ -160,10 +160,49 @@ def test_ctrl_c_stops_cleanly_with_what_is_done(tmp_path: Path) -> None:
     assert done % 100 == 0
 
 
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+def test_ctrl_c_waits_for_no_job(monkeypatch) -> None:
+    """Those with bodies take a minute; a second Ctrl-C while they were waited for left everything hanging."""
+    before = set(multiprocessing.active_children())
+
+    def interrupted(*args: object, **kwargs: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("game.app.autoplay.executors.wait", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        next(Crew(2, task=_sleep_for_an_hour).results(PLAN.jobs()))
+    assert not set(multiprocessing.active_children()) - before
+
+
+def _sleep_for_an_hour(job: Job) -> Result:
+    time.sleep(3600.0)
+    return Result(job.number)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+def test_workers_end_with_a_run_that_is_killed_and_play_what_it_plays(tmp_path: Path) -> None:
+    """Also from a folder where another ``game`` lies; what was kept is gone on with."""
+    (tmp_path / "game").mkdir()
+    (tmp_path / "game" / "__init__.py").write_text("")
+    state = tmp_path / "log.jsonl.part.json"
+    command = [sys.executable, str(ROOT / "run_game.py"), "autoplay", "--episodes", "100000", "--workers", "2"]
+    run = subprocess.Popen(
+        [*command, "--out", "log.jsonl"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    for _ in range(600):
+        if state.exists() or run.poll() is not None:
+            break
+        time.sleep(0.1)
+    run.kill()
+    # Whoever lives on holds the other end of these pipes.
+    run.communicate(timeout=60)
+    assert json.loads(state.read_text())["run"]["talks"] >= 100
+
+
 def test_a_dask_cluster_gives_the_very_same(straight, tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed", reason="the extra cluster is not installed")
     path = tmp_path / "log.jsonl"
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=2, processes=False, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=2, processes=False, dashboard_address=":0")
     try:
         run = play(PLAN, Crew(2, cluster.scheduler_address), out=path, progress=quiet)
     finally:

@@ -321,6 +321,18 @@ def move(view, memory, rng):
 """
 
 
+def test_an_own_policy_leaves_no_folder_behind_when_nobody_ends_it(tmp_path: Path) -> None:
+    """As in the worker of a pool, which ends without a word."""
+    path = tmp_path / "own.py"
+    path.write_text(OWN)
+    process = custom.OwnPolicy.load(path).sit(random.Random(1)).process
+    folder = Path(process.folder.name)
+    assert folder.is_dir()
+    process.popen.stdin.close()
+    assert process.popen.wait(30) == 0
+    assert not folder.exists()
+
+
 def test_nothing_an_own_policy_hoards_outlasts_a_talk(tmp_path: Path) -> None:
     """Which worker plays which talks must not matter, so no talk may know of another."""
     path = tmp_path / "own.py"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import builtins
 import contextlib
 import json
+import os
 import random
 import sys
 import types
@@ -146,6 +147,9 @@ def main() -> None:
             told = json.dumps({"error": f"{type(error).__name__}: {error}"[:200]})
         sys.stdout.write(told + "\n")
         sys.stdout.flush()
+    # A worker of a pool ends without a word, and with it who would clear this away.
+    with contextlib.suppress(OSError):
+        os.rmdir(os.getcwd())
 
 
 if __name__ == "__main__":
