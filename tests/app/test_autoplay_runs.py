@@ -259,6 +259,16 @@ def test_bad_arguments_give_one_line(capsys, words: list[str], says: str) -> Non
     assert says in error
 
 
+@pytest.mark.parametrize("option", ["--out", "--report", "--junit", "--plots", "--record"])
+def test_a_place_where_nothing_can_be_written_is_told_before_hours_are_played(tmp_path, capsys, option: str) -> None:
+    (tmp_path / "file").write_text("")
+    wrong = [tmp_path / "file" / "into"] if option in {"--plots", "--record"} else [tmp_path, tmp_path / "none" / "x"]
+    for path in wrong:
+        assert main(["autoplay", "--episodes", "1000000", option, str(path)]) == 2
+        assert "cannot write" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
 def test_workers_are_as_many_as_asked() -> None:
     assert workers_of("3") == 3
     assert workers_of("auto") >= 1

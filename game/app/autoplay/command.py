@@ -30,6 +30,7 @@ from typing import Any
 from game.app.autoplay.comparisons import Comparison, compared
 from game.app.autoplay.coverage import covered
 from game.app.autoplay.executors import Crew, workers_of
+from game.app.autoplay.places import check_places
 from game.app.autoplay.progress import Progress
 from game.app.autoplay.runs import Plan, Run, play
 from game.app.content import load_talk_assets, stall_path
@@ -123,6 +124,11 @@ def run(args: argparse.Namespace) -> int:
     )  # fmt: skip
     if requirements is not None:
         check_played(requirements, plan.populations, plan.visits)
+    check_places(args.out, args.record, args.plots, [args.junit, args.report])
+    if args.report is not None or args.plots is not None:
+        from game.tools.reports import load_matplotlib
+
+        load_matplotlib()
     crew = Crew(workers_of(args.workers), args.dask)
     bar = partial(Progress, show=True if args.progress else None)
     done = play(plan, crew, out=args.out, resume=args.resume, progress=bar)
