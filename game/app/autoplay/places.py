@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from game.core.errors import BadInput
+from game.formats.files import check_replaceable
 
 __all__ = ["check_places"]
 
@@ -18,6 +19,7 @@ def check_places(out: Path | None, record: Path | None, plots: Path | None, file
     """
     for path in (out, *files):
         if path is not None:
+            check_replaceable(path)
             if path.is_dir():
                 raise BadInput(f"cannot write {path}", expected="a file", seen="a folder")
             _check_folder(path, path.resolve().parent)
