@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,33 @@ def test_a_stopped_run_keeps_what_is_done_and_goes_on_to_the_same_bytes(straight
     assert path.read_bytes() == log
     assert result_of(run) == figures
     assert [p.name for p in tmp_path.iterdir()] == ["log.jsonl"]
+
+
+def test_an_own_policy_that_was_edited_is_another_run(tmp_path: Path) -> None:
+    own, path = tmp_path / "own.py", tmp_path / "log.jsonl"
+    source = 'SEES = "table"\ndef move(view, memory, rng):\n    return {"choice": "wait"}\n'
+    own.write_text(source)
+    plan = Plan(("flea",), (str(own),), 30, 5, log="plain", per_job=5)
+    play(plan, Stopping(), out=path, progress=quiet)
+    own.write_text(source.replace("wait", "leave"))
+    with pytest.raises(BadInput, match="another contents"):
+        play(plan, Crew(), out=path, resume=True, progress=quiet)
+
+
+def test_a_worker_that_stands_elsewhere_and_lives_on_plays_the_files_as_they_are_now(tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    source = 'SEES = "table"\ndef move(view, memory, rng):\n    return {"choice": "wait"}\n'
+    moves = set()
+    for act in ("wait", "leave"):
+        own.write_text(source.replace("wait", act))
+        job = next(Plan(("flea",), ("own.py",), 2, 5, log="plain", folder=str(tmp_path)).jobs())
+        row = json.loads(work(job).rows.splitlines()[0])
+        assert row["policy"] == "own.py"
+        moves.add(row["choice"])
+    assert moves == {"wait", "leave"}
+    own.write_text(source + "# another\n")
+    with pytest.raises(BadInput, match="expected the same game but saw 'other contents'"):
+        work(replace(job, made=job.made[:-1] + "x"))
 
 
 def test_only_the_same_run_is_gone_on_with(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from functools import partial
 from pathlib import Path
@@ -121,6 +122,8 @@ def run(args: argparse.Namespace) -> int:
         stalls, _populations(args.policy or ["random"]), args.episodes, args.seed, args.body, args.mode,
         "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged, visits=args.visits,
         record="" if args.record is None else str(args.record.resolve()),
+        # Dask's workers stand elsewhere.
+        folder=os.getcwd() if args.dask else "",
     )  # fmt: skip
     if requirements is not None:
         check_played(requirements, plan.populations, plan.visits)
