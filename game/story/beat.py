@@ -18,7 +18,8 @@ class Start:
     """The player steps up to the stall."""
 
 
-class Chose(NamedTuple):
+@dataclass(slots=True)
+class Chose:
     """The player takes a choice of the last beat; ``outcome`` is what the market made of it, if anything."""
 
     choice: str

@@ -41,8 +41,8 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     if run.ended is not None:
         raise BadInput("talk", expected="one that goes on", seen=f"ended: {run.ended}")
     if isinstance(event, Chose) and run.started:
-        choice, outcome = event
-        run.walk(run.choose(choice), None if outcome is None else _known(outcome, script))
+        outcome = event.outcome
+        run.walk(run.choose(event.choice), None if outcome is None else _known(outcome, script))
     elif isinstance(event, Warp):
         if event.node not in script.nodes:
             raise BadInput("node", expected=f"one of {script.stall}", seen=event.node)
@@ -90,8 +90,8 @@ class _Run(Scope):
     """The working copy of where a talk stands during one step.
 
     told: how the player's line landed, ``veiled`` where the words hide it; offering: whether an offer went with it;
-    kept: what conditions and lines may use, without what the game says of this step; nodes, lines, stimuli: what came
-    in this step; passed, heard: all nodes and lines before it, of which ``last`` lines came in the step before;
+    kept: what conditions and lines may use, without what the game says of this step; nodes: all that were passed;
+    heard: the lines before this step, of which ``last`` came in the step before; lines, stimuli: what came in this one;
     options: the choices as the player sees them.
     """
 
@@ -99,13 +99,13 @@ class _Run(Scope):
     kept: Mapping[str, Value]
     __slots__ = (
         "ahead", "counter", "ended", "heard", "kept", "laid", "last", "lines", "node", "nodes", "offering", "options",
-        "passed", "past", "ready", "returns", "started", "stimuli", "talk", "told", "turn",
+        "past", "ready", "returns", "started", "stimuli", "talk", "told", "turn",
     )  # fmt: skip
 
     def __init__(self, before: StoryState, env: Mapping[str, Value]) -> None:
         (
             self.talk, self.node, self.started, self.ended, self.counter, self.turn, self.returns, self.past, kept,
-            self.laid, self.passed, self.heard, self.last,
+            self.laid, self.nodes, self.heard, self.last,
         ) = before  # fmt: skip
         self.ready = self.talk.ready
         self.names = self.kept = kept
@@ -116,14 +116,13 @@ class _Run(Scope):
                 self.told = str(names["quality"])
             self.offering = names["offer_result"] != "none"
         self.ahead: list[float] | None = None
-        self.nodes: tuple[str, ...] = ()
         self.lines: tuple[Spoken, ...] = ()
         self.stimuli: tuple[Stimulus, ...] = ()
         self.options: tuple[Choice, ...] = ()
 
     # --- what conditions ask ---------------------------------------------------------------------------------
     def visits(self, node: str) -> int:
-        return self.passed.count(node) + self.nodes.count(node)
+        return self.nodes.count(node)
 
     def seen(self, name: str) -> bool:
         return bool(self.everything & self.ready.script.bits.seen[name])
@@ -143,13 +142,15 @@ class _Run(Scope):
 
     # --- walking ---------------------------------------------------------------------------------------------
     def choose(self, choice_id: str) -> str:
-        """Take a choice: its words, effects and feelings; the node it leads to."""
+        """Take a choice: its words, effects and feelings; the node it leads to, or its own passage with all of that."""
         for choice, line in self.laid:  # noqa: B007 - the one that is found
             if choice.id == choice_id and (choice.always or self.usable(choice)):
                 break
         else:
             ids = " | ".join([choice.id for choice, _ in self.laid])
             raise BadInput("choice", expected=ids or "none", seen=choice_id)
+        if choice.onward and not self.offering:
+            return choice.onward[1 if self.past & line.bit else 0]
         if not choice.silent:
             self.say(line)
         if self.offering and choice.act != "offer":
@@ -186,8 +187,8 @@ class _Run(Scope):
             if closing is not None and node.waits:
                 break
             self.node = node.id
-            while stretch is not None:
-                nodes, lines, past, stimuli, effects, says, stretch = stretch
+            while True:
+                nodes, lines, past, stimuli, effects, says, then = stretch
                 self.nodes += nodes
                 self.past |= past
                 if lines:
@@ -200,9 +201,14 @@ class _Run(Scope):
                     for test, group in says:
                         if test is None or test(self):
                             self.say_one(group)
+                if then is None:
+                    break
+                stretch = then
             if not node.halts:
                 if node.call is None:
-                    target = node.way or self.way(node.ways)
+                    for test, target in node.ways:  # noqa: B007 - the first that is open
+                        if test is None or test(self):
+                            break
                 else:
                     self.push(node.after)
                     target = node.call
@@ -369,7 +375,7 @@ class _Run(Scope):
             timed = timer_at(self.ready.timers[self.node], self.options)
         fresh = _tuple(StoryState, (
             self.talk, self.node, True, self.ended, self.counter, self.turn, self.returns, self.past, self.kept,
-            self.laid, self.passed + self.nodes, self.heard + self.lines, len(self.lines),
+            self.laid, self.nodes, self.heard + self.lines, len(self.lines),
         ))  # fmt: skip
         beat = _tuple(Beat, (self.node, self.lines, self.options, self.stimuli, self.ended, timed))
         return fresh, beat

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from game.story.beat import Spoken, Stimulus
-from game.story.ready import ReadyEffect, ReadyNode, ReadySay
+from game.story.ready import ReadyChoice, ReadyEffect, ReadyNode, ReadySay
 
 __all__ = ["Passage", "Stretch", "passage_from"]
 
@@ -23,6 +23,15 @@ class Stretch(NamedTuple):
     effects: tuple[ReadyEffect, ...] = ()
     says: tuple[ReadySay, ...] = ()
     then: Stretch | None = None
+
+    @staticmethod
+    def taking(choice: ReadyChoice, *, said: bool) -> Stretch:
+        """A choice of which one thing can be said. said: whether it was said before."""
+        line = choice.texts[0]
+        if choice.silent or (said and not line.again):
+            return Stretch(past=choice.bit, effects=choice.effects)
+        stimuli = () if line.stimulus is None else (line.stimulus,)
+        return Stretch((), line.fixed, choice.bit | line.bit, stimuli, choice.effects)
 
     def after(self, node: ReadyNode) -> Stretch:
         """The same with a node passed as well, which nothing has been asked before."""
@@ -40,20 +49,23 @@ class Stretch(NamedTuple):
         return self._replace(lines=(*self.lines, *line.always), past=self.past | line.bit, stimuli=stimuli)
 
 
-Passage = tuple[ReadyNode, Stretch | None]
+Passage = tuple[ReadyNode, Stretch]
 """Nodes that follow one another whatever holds: the last one, where the talk waits, ends or takes a turn, and what
 happens up to and in it. Where the talk waits or ends there, it is the only one, since the market's answer may come
 before it."""
 
 
 def passage_from(
-    first: ReadyNode, nodes: Callable[[str], ReadyNode | None], says: Callable[[ReadyNode], Sequence[ReadySay]]
+    beginning: Stretch,
+    first: ReadyNode,
+    nodes: Callable[[str], ReadyNode | None],
+    says: Callable[[ReadyNode], Sequence[ReadySay]],
 ) -> Passage:
-    """The passage that begins with a node.
+    """The passage that goes on with a node.
 
     nodes: by the name of a way, the node; None where it depends on the talk which it is. says: what a node can say.
     """
-    stretches = [Stretch()]
+    stretches = [beginning]
     passed: dict[str, ReadyNode] = {}
     following: ReadyNode | None = first
     while following is not None:

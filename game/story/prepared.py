@@ -14,9 +14,21 @@ from typing import Literal
 
 from game.story.expressions import Expression, Scope
 from game.story.model import HOME, Branch, ChoiceDef, LineDef, NodeDef, SayDef, Script
-from game.story.passages import Passage, passage_from
+from game.story.passages import Passage, Stretch, passage_from
 from game.story.pools import Act, Pool
-from game.story.ready import Few, ReadyChoice, ReadyGroup, ReadyLine, ReadyNode, ReadySay, Test, Way, never
+from game.story.ready import (
+    FRESH,
+    STALE,
+    Few,
+    ReadyChoice,
+    ReadyGroup,
+    ReadyLine,
+    ReadyNode,
+    ReadySay,
+    Test,
+    Way,
+    never,
+)
 from game.story.text import Text
 from game.story.vocabulary import ACTS
 
@@ -60,15 +72,23 @@ class Prepared:
         return found
 
     def passage(self, name: str, told: str) -> Passage:
-        """The passage that begins with a node, where the player's line landed so."""
+        """The passage that begins with a node, or one of a choice's own, where the player's line landed so."""
         known = self.passages[told]
         found = known.get(name)
         if found is None:
-            found = passage_from(self.node(name), self._way_to, lambda node: self.says(node, told))
+            beginning, first = self._beginning(name)
+            found = passage_from(beginning, self.node(first), self._way_to, lambda node: self.says(node, told))
             known[name] = found
             if name == self.script.home:
                 known[HOME] = found
         return found
+
+    def _beginning(self, name: str) -> tuple[Stretch, str]:
+        """What a passage begins with, and the node that follows."""
+        if not name.startswith((FRESH, STALE)):
+            return Stretch(), name
+        choice = self._choices[name.partition(":")[2]]
+        return Stretch.taking(choice, said=name.startswith(STALE)), choice.way
 
     def _way_to(self, target: str) -> ReadyNode | None:
         return self.node(target) if target in self.script.nodes else None

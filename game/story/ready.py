@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from game.story.prepared import Prepared
 
 __all__ = [
-    "Few", "Laid", "Left", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode", "ReadySay", "Test",
-    "Way", "never", "offered", "spoken",
+    "FRESH", "STALE", "Few", "Laid", "Left", "ReadyChoice", "ReadyEffect", "ReadyGroup", "ReadyLine", "ReadyNode",
+    "ReadySay", "Test", "Way", "never", "offered", "spoken",
 ]  # fmt: skip
 
 Test = Callable[[Scope], Any]
@@ -38,6 +38,8 @@ Laid = tuple[tuple["ReadyChoice", "ReadyLine"], ...]
 
 _FIXED_NAMES = frozenset({"item", *PERSON_SLOTS})
 """Names in braces that mean the same throughout all talks about an item."""
+FRESH, STALE = "fresh:", "stale:"
+"""Before the id of a choice: the passage that begins with it, and with its words where they were not yet said."""
 _MOST_KEPT = 128
 _MOST_WORDS = 16
 
@@ -190,12 +192,13 @@ class ReadyChoice:
     settles; always: nothing can keep it from being taken.
 
     texts: its wordings, the bits of which are ``mask``; fresh: by the bits of those said, the others, where each of
-    them fits at any time (``fits``). way: where it leads whatever holds.
+    them fits at any time (``fits``). way: where it leads whatever holds; onward: its own passages (``FRESH``,
+    ``STALE``), where nothing but that is open; else empty.
     """
 
     __slots__ = (
         "act", "always", "bit", "choice", "effects", "fits", "fresh", "gone", "hidden", "id", "mask", "needs",
-        "ruled_out", "shown", "silent", "texts", "used", "way", "ways", "weight",
+        "onward", "ruled_out", "shown", "silent", "texts", "used", "way", "ways", "weight",
     )  # fmt: skip
 
     def __init__(self, choice: ChoiceDef, ready: Prepared) -> None:
@@ -215,6 +218,13 @@ class ReadyChoice:
         self.fresh: Few[int, Lots[ReadyLine]] = Few()
         self.effects, self.ways = _effects(choice.effects), ready.ways(choice.to)
         self.way = _only_way(self.ways)
+        self.onward = (FRESH + self.id, STALE + self.id) if self._settled(ready.script.nodes.get(self.way)) else ()
+
+    def _settled(self, node: NodeDef | None) -> bool:
+        """Whether there is one thing to say at most, and a node follows before which nothing can come."""
+        if node is None or node.waits or node.end is not None:
+            return False
+        return self.silent or (len(self.texts) == 1 and bool(self.texts[0].fixed))
 
 
 class ReadyNode:

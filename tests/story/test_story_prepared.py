@@ -95,3 +95,18 @@ def test_what_is_worked_out_once_changes_no_talk(path: Path) -> None:
             event = Chose(draw.choice([choice.id for choice in beat.choices if choice.act != "leave"]))
     laid = {node.id for node in warm.tables[next(iter(warm.items))].nodes.values() if node.table is not None}
     assert laid == ({"hub"} if path == BENCH else set())
+
+
+def test_what_a_choice_says_is_said_once_however_often_it_is_taken():
+    """Taken a first time, a second time, and with an offer, which has words of its own."""
+    script = load_script(BENCH)
+    state, beat = advance(script, begin(script, "cup", 1), Start(), {})
+    told = []
+    for choice, env in (("praise", {}), ("praise", {}), ("flaw", {"offer_result": "refused", "offer": 300.0})):
+        state, beat = advance(script, state, Chose(choice), env)
+        told.append([line.id for line in beat.lines])
+    praise, _, flaw, _ = [choice.texts[0].id for choice in script.nodes["hub"].choices]
+    assert told == [[praise, "kind_1", "ask"], ["kind_1", "ask"], [flaw, "eyes_1", "ask"]]
+    assert state.chosen == {"praise", "flaw"}
+    assert state.visits == {"hub": 4, "kind": 2, "eyes": 1, "next": 3}
+    assert state.heard == {"ask": 4, "kind_1": 2, "eyes_1": 1}

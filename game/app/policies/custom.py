@@ -26,7 +26,7 @@ import sys
 import tempfile
 import threading
 import weakref
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -43,14 +43,12 @@ VIEWS = ("table", "words", "face", "body", "reader", "oracle")
 MOVE_S = 5.0
 """A single move may take so long …"""
 CPU_S = 600
-"""… and all of a process together so much of a processor …"""
-TALKS = 1000
-"""(a process plays so many talks, then another follows) …"""
+"""… and all of them together so much of a processor …"""
 MEMORY_BYTES = 512 * 1024 * 1024
 """… and so much memory."""
 _MAX_BYTES = 200_000
 _MAX_ANSWER = 10_000
-_FORBIDDEN = own_worker.AWAY
+_FORBIDDEN = own_worker.AWAY - {"print"}
 _INSIDE = ("f_", "tb_", "gi_", "cr_", "ag_", "co_")
 """Attributes of frames, tracebacks, generators and code: through them one walks out of the file."""
 
@@ -72,9 +70,7 @@ class OwnPolicy:
             tree = ast.parse(source, str(path))
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             line = error.lineno if isinstance(error, SyntaxError) else None
-            raise BadInput(
-                "policy", where=Where(str(path), line), expected="Python", seen=str(error) or type(error).__name__
-            ) from None
+            raise BadInput("policy", where=Where(str(path), line), expected="Python", seen=str(error)) from None
         sees, moves = "", False
         for node in ast.walk(tree):
             _check(node, path)
@@ -90,10 +86,10 @@ class OwnPolicy:
 
     def sit(self, rng: random.Random) -> _OwnPlayer:
         """A new talk."""
-        if self._process is None or self._process.talks >= TALKS:
-            # One that still plays lives as long as its players.
+        if self._process is None:
             self._process = _Process(self.path, self.source)
-        return _OwnPlayer(self._process, rng.getrandbits(48))
+        self._process.send({"seed": rng.getrandbits(48)})
+        return _OwnPlayer(self._process)
 
 
 def _check(node: ast.AST, path: Path) -> None:
@@ -120,20 +116,14 @@ def _check(node: ast.AST, path: Path) -> None:
         raise BadInput(f"{wrong} is not allowed in a policy", where=place)
 
 
+@dataclass
 class _OwnPlayer:
-    """One talk; many may be played side by side in one process."""
-
-    def __init__(self, process: _Process, seed: int) -> None:
-        self.process = process
-        process.talks += 1
-        self.talk = process.talks
-        process.send({"talk": self.talk, "seed": seed})
-        weakref.finalize(self, process.over.append, self.talk)
+    process: _Process
 
     def move(self, view: View) -> Choice:
         """Ask the file."""
         kind = asdict(view)
-        answer = self.process.ask(self.talk, {"table": kind} if isinstance(view, Table) else kind)
+        answer = self.process.ask({"table": kind} if isinstance(view, Table) else kind)
         choice, offer = answer.get("choice"), answer.get("offer")
         if not isinstance(choice, str) or not (offer is None or type(offer) is int):
             raise BadInput(f"policy {self.process.path}", expected='{"choice": ID, "offer": whole number or None}',
@@ -145,7 +135,7 @@ class _Process:
     """The file's process (``own_worker``): plain data in and out, nothing inherited but its source."""
 
     def __init__(self, path: Path, source: str) -> None:
-        self.path, self.talks, self.over = path, 0, list[int]()
+        self.path = path
         self.folder = tempfile.TemporaryDirectory(prefix="mcg-policy-")
         self.popen = subprocess.Popen(
             [sys.executable, "-I", "-S", own_worker.__file__],
@@ -155,12 +145,10 @@ class _Process:
         self._end = weakref.finalize(self, _kill, self.popen, self.folder)
         self.answers: queue.Queue[bytes] = queue.Queue()
         threading.Thread(target=_listen, args=(self.popen, self.answers), daemon=True).start()
-        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES, "answer": _MAX_ANSWER})
+        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES})
 
     def send(self, message: dict[str, Any]) -> None:
-        """One line to the file's process, and which talks are over since the last."""
-        over, self.over[:] = list(self.over), []
-        message = {**message, "over": over}
+        """One line to the file's process."""
         assert self.popen.stdin is not None
         try:
             self.popen.stdin.write(json.dumps(message).encode() + b"\n")
@@ -168,9 +156,9 @@ class _Process:
         except BrokenPipeError:
             raise self._gone() from None
 
-    def ask(self, talk: int, view: dict[str, Any]) -> dict[str, Any]:
+    def ask(self, view: dict[str, Any]) -> dict[str, Any]:
         """One move. Raises BadInput where the file fails, is too slow or says nothing of use."""
-        self.send({"talk": talk, "view": view})
+        self.send({"view": view})
         try:
             line = self.answers.get(timeout=MOVE_S)
         except queue.Empty:
@@ -181,8 +169,7 @@ class _Process:
             raise self._gone()
         answer = json.loads(line)
         if "error" in answer:
-            where = Where(str(self.path), answer.get("line"))
-            raise BadInput("policy", where=where, expected="a move", seen=answer["error"])
+            raise BadInput(f"policy {self.path}", expected="a move", seen=answer["error"])
         return dict(answer)
 
     def _gone(self) -> BadInput:
