@@ -151,3 +151,20 @@ def test_faults_in_the_requirements_are_told_with_their_place(tmp_path: Path, ca
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert place in error
+
+
+def test_a_policy_of_any_name_is_written_in_its_letters(run: Run, tmp_path: Path) -> None:
+    """Own policies are files; matplotlib warns of letters that it lacks, and warnings are errors here."""
+    pytest.importorskip("matplotlib", reason="the extra reports is not installed")
+    from game.render.text import japanese_font
+    from game.tools.reports import write_plots, write_report
+
+    if japanese_font() is None:
+        pytest.skip("no Japanese font")
+    own = Run(Plan(("flea",), ("折り/待つ人.py", "random:0.5,waits.py:0.5"), 40, 3, cover=True), coverage=run.coverage)
+    for (stall, _, _), tally in run.tallies.items():
+        for population in own.plan.populations:
+            own.tallies[stall, population, "random"] = tally
+    write_plots(tmp_path / "plots", own)
+    write_report(tmp_path / "page.html", own, [])
+    assert ">待つ人.py<" in (tmp_path / "page.html").read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ from game.app.autoplay.runs import Run
 from game.app.autoplay.tally import MOST_ROUNDS, PRICE_BINS, Tally
 from game.core.emotion_space import EMOTIONS
 from game.core.errors import BadInput
+from game.render.text import japanese_font
 
 __all__ = ["PLOTS", "figure_svg", "load_matplotlib"]
 
@@ -35,13 +36,29 @@ def load_matplotlib() -> Any:
 
     plt.rcParams.update(
         {
-            "font.family": "sans-serif", "font.size": 10, "text.color": INK, "axes.edgecolor": LINE,
+            "font.family": ["sans-serif", *_japanese()], "font.size": 10, "text.color": INK, "axes.edgecolor": LINE,
             "axes.labelcolor": SOFT, "xtick.color": SOFT, "ytick.color": INK, "axes.spines.top": False,
             "axes.spines.right": False, "figure.facecolor": PAPER, "axes.facecolor": PAPER, "svg.fonttype": "none",
             "svg.hashsalt": "autoplay", "axes.titlesize": 10, "axes.titleweight": "bold", "axes.titlelocation": "left",
         }
     )  # fmt: skip
     return plt
+
+
+def _japanese() -> list[str]:
+    """The name of a font for letters that matplotlib's own lacks (own policies are files, with any names)."""
+    from matplotlib import font_manager
+
+    path = japanese_font()
+    if path is None:
+        return []
+    font_manager.fontManager.addfont(path)
+    return [str(font_manager.FontProperties(fname=path).get_name())]
+
+
+def _short(name: str) -> str:
+    """A policy's name for a narrow plot: a file without its folder, a mixture on several lines."""
+    return "\n".join(part.rpartition("/")[2] for part in name.split(","))
 
 
 def surplus(plt: Any, tallies: _TALLIES) -> Any:
@@ -60,7 +77,7 @@ def surplus(plt: Any, tallies: _TALLIES) -> Any:
         axes.plot([ci.low, ci.high], [at, at], color=ACCENT, lw=3, alpha=0.45, solid_capstyle="round")
         axes.plot(ci.mean, at, "o", color=ACCENT, ms=7)
         axes.text(ci.high + 0.012, at, f"{ci.mean:.3f}", va="center", fontsize=9, color=INK)
-    axes.set_yticks(range(len(names)), names)
+    axes.set_yticks(range(len(names)), [_short(name) for name in names])
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(-0.6, len(names) - 0.2)
     axes.tick_params(length=0)
@@ -84,7 +101,7 @@ def _small(
         axes.set_visible(False)
     for axes, (name, tally) in zip(grid.flat, tallies.items(), strict=False):
         draw(axes, tally)
-        axes.set_title(name)
+        axes.set_title(_short(name))
         axes.tick_params(length=0, labelsize=8)
         axes.spines["left"].set_visible(False)
     grid[-1, 0].set_xlabel(below, loc="left", fontsize=9)
