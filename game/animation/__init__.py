@@ -1,6 +1,7 @@
 """The body in motion: from the planner's decisions to one pose per character and to the matrices that skin a mesh."""
 
-from game.animation.body_size import BodySize, measure_body
+from game.animation.body_shape import BodyShape, measure_shape
+from game.animation.body_size import REGIONS, BodySize, measure_body
 from game.animation.characters import PerformerState
 from game.animation.fitting import NEEDED, Fitting, fit_to
 from game.animation.liveliness import GAZE_AWAY, GAZE_CUSTOMER, GAZE_GOODS, LifeConfig
@@ -16,6 +17,8 @@ __all__ = [
     "GAZE_GOODS",
     "MODES",
     "NEEDED",
+    "REGIONS",
+    "BodyShape",
     "BodySize",
     "EyeBones",
     "Fitting",
@@ -35,4 +38,5 @@ __all__ = [
     "joint_accelerations",
     "largest_joint_acceleration",
     "measure_body",
+    "measure_shape",
 ]

@@ -9,7 +9,8 @@ missing bones) is the rig's (skinning.py).
 2. Each palm goes where its contact wants it: over the table in the world, near the own head, chest, belly or hips at
    the same place of *this* body's head, chest, belly or hips, in the open as seen from the shoulder at the length of
    this arm. All of them are weighed by how near they are, so nothing switches. Hands that are close together stay so.
-3. Arms and legs follow by the same inverse kinematics as everywhere (limbs.h).
+3. Hands bigger than the reference's are held off the body's own outside (skin/clear.c).
+4. Arms and legs follow by the same inverse kinematics as everywhere (limbs.h).
 
 Here is what that needs to know of the two bodies; the fit itself is skin/fit.c.
 """
@@ -24,7 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from game.animation import figure
+from game.animation.body_shape import BodyShape
 from game.animation.body_size import REGIONS, BodySize
+from game.animation.clearance import BIGGER_HAND, HAND, SHAPE, hand_reach, hands_table, shapes_table
 from game.animation.collision import BODY, TABLE_BACK_Z_M
 from game.animation.reach import LIMB, STRAIGHT, limb_table
 from game.core.errors import BadInput
@@ -103,6 +106,7 @@ FIT = np.dtype(
         ("hips_reference", "<f4", 3), ("hips", "<f4", 3), ("palm", "<f4", (2, 3)),
         ("leg", "<f4"), ("hand", "<f4"), ("arm", "<f4", 2), ("table_m", "<f4"), ("clear", "<f4"), ("middle", "<f4"),
         *((name, "<f4", 2) for name in _LIMITS),
+        ("shapes", "<i4"), ("reach", "<f4"), ("own_hand", HAND, 2), ("shape", SHAPE, len(REGIONS)),
     ]
 )  # fmt: skip
 
@@ -113,7 +117,8 @@ class Fitting:
 
     rest: (41, 3) local translations of the fitted figure; hips: (3,) where its hips rest; leg, hand, arm (2,): this
     body's length over the reference's. limbs: (4,) LIMB of arms and legs; feet: (2, 2, 3) ankles at rest, the
-    reference's and this body's; centre, radius: (2, 4, 3) of REGIONS in their joints' frames on both bodies.
+    reference's and this body's; centre, radius: (2, 4, 3) of REGIONS in their joints' frames on both bodies. hands:
+    (2,) HAND; shapes: (n,) SHAPE of what they stay out of, none for hands like the reference's.
     """
 
     rest: Floats
@@ -125,6 +130,13 @@ class Fitting:
     feet: Floats
     centre: Floats
     radius: Floats
+    hands: NDArray[np.void]
+    shapes: NDArray[np.void]
+
+    @property
+    def big_handed(self) -> bool:
+        """Whether its hands are so much bigger than the reference's that they need to know the body's shape."""
+        return self.hand > BIGGER_HAND
 
     def table(self) -> NDArray[np.void]:
         """(1,) Fit of skin/fit.h."""
@@ -146,14 +158,19 @@ class Fitting:
         fit["table_m"], fit["clear"], fit["middle"] = TABLE_TOP_M, _CLEAR, _MIDDLE
         for name, limit in _LIMITS.items():
             fit[name] = limit
+        fit["shapes"], fit["reach"], fit["own_hand"] = len(self.shapes), hand_reach(self.hand), self.hands
+        fit[0]["shape"][: len(self.shapes)] = self.shapes
         return fit
 
 
-def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fitting | None:
+def fit_to(
+    places: Mapping[str, Floats], size: BodySize | None = None, shape: BodyShape | None = None
+) -> Fitting | None:
     """The fitting of a body.
 
     places: VRM humanoid bone -> (3,) where its joint is in the T-pose, model space, metres, feet on y = 0, facing +Z.
-    size: how its parts differ in size; guessed from the skeleton where None.
+    size: how its parts differ in size; guessed from the skeleton where None. shape: of its outside, which hands bigger
+    than the reference's stay out of.
     -> None where it is the reference's own body. Raises BadInput where needed bones are missing.
     """
     missing = [bone for bone in NEEDED if bone not in places]
@@ -187,6 +204,8 @@ def fit_to(places: Mapping[str, Floats], size: BodySize | None = None) -> Fittin
         feet=np.array([[w[f"{side}Foot"] for side in _SIDES] for w in (_REST, where)]),
         centre=centre,
         radius=radius,
+        hands=hands_table(where, hand),
+        shapes=shapes_table(shape) if shape and hand > BIGGER_HAND else np.zeros(0, dtype=SHAPE),
     )
 
 

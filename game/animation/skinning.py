@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from game.animation.body_shape import BodyShape
 from game.animation.body_size import BodySize
 from game.animation.fitting import NEEDED, Fitting, fit_to
 from game.animation.pose import Pose
@@ -98,6 +99,7 @@ class Rig:
         chains: Sequence[SpringChain] = (),
         colliders: Sequence[SpringCollider] = (),
         size: BodySize | None = None,
+        shape: BodyShape | None = None,
         eyes: EyeBones | None = None,
     ) -> Rig:
         """names, parents (J,) parents first, rest_translation (J, 3) local metres, rest_rotation (J, 4) local; Y up,
@@ -105,8 +107,8 @@ class Rig:
 
         inverse_bind: (K, 4, 4) of the skin's columns; the rest pose's own where None. skin_joint: (K,) their joints,
         all in order where None. bones: VRM humanoid bone -> joint, by name where None. size: how the body's parts
-        differ from the reference's. eyes: joints that follow
-        the gaze. Raises BadInput where the arrays do not fit or there are no hips.
+        differ from the reference's; shape: of its outside. eyes: joints
+        that follow the gaze. Raises BadInput where the arrays do not fit or there are no hips.
         """
         count = len(names)
         turned = np.tile(quat.IDENTITY, (count, 1)) if rest_rotation is None else np.asarray(rest_rotation)
@@ -123,7 +125,7 @@ class Rig:
 
         place, world = t_pose(skeleton, index)
         whole = all(bone in index for bone in NEEDED)
-        fitting = fit_to({bone: place[at] for bone, at in index.items()}, size) if whole else None
+        fitting = fit_to({bone: place[at] for bone, at in index.items()}, size, shape) if whole else None
         springs = build_springs(skeleton, tuple(chains), tuple(colliders), place, world)
         known = [name for name in REFERENCE.names if name in index]
         tips = [tip for tip in _TIPS if tip in index and _TIPS[tip] in index]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from game.animation import BodySize, Rig, fit_to, measure_body
+from game.animation import REGIONS, BodyShape, BodySize, Rig, fit_to, measure_body, measure_shape
 from game.animation import SpringChain as RigChain
 from game.animation import SpringCollider as RigCollider
 from game.core.errors import BadInput, Where
@@ -33,7 +33,8 @@ def rig_of(vrm: Vrm, *, springs: bool = True) -> Rig:
     wanted |= {collider.node for collider in vrm.colliders}
     found = skeleton_of(file, wanted)
     places = {name: file.node_model[node][:3, 3] for name, node in vrm.bones.items()}
-    size = None if fit_to(places) is None else _size(vrm, places)
+    bare = fit_to(places)
+    size, shape = (None, None) if bare is None else _measured(vrm, places, bare.big_handed)
     return Rig.from_arrays(
         found.skeleton.names,
         found.skeleton.parents,
@@ -45,11 +46,14 @@ def rig_of(vrm: Vrm, *, springs: bool = True) -> Rig:
         chains=[_chain(chain, found.joint) for chain in vrm.springs if springs and len(chain.joints) > 1],
         colliders=[RigCollider(found.joint[c.node], c.offset, c.radius_m, c.tail) for c in vrm.colliders if springs],
         size=size,
+        shape=shape,
     )
 
 
-def _size(vrm: Vrm, places: Mapping[str, NDArray[np.float64]]) -> BodySize:
-    """How big head and trunk are, from the finest mesh of the first skin."""
+def _measured(
+    vrm: Vrm, places: Mapping[str, NDArray[np.float64]], big_handed: bool
+) -> tuple[BodySize, BodyShape | None]:
+    """How big head and trunk are, and the shape that big hands need, from the finest mesh of the first skin."""
     file = vrm.gltf
     joints = np.array(file.skins[0].joints)
     head = joints == vrm.bones["head"]
@@ -61,12 +65,21 @@ def _size(vrm: Vrm, places: Mapping[str, NDArray[np.float64]]) -> BodySize:
         default=[],
     )
     if not parts:
-        return BodySize({})
+        return BodySize({}), None
     position, joint, weight = (
         np.concatenate([part.attributes[name] for part in parts]) for name in ("POSITION", "JOINTS_0", "WEIGHTS_0")
     )
     owner = joint[np.arange(len(joint)), weight.argmax(axis=1)]
-    return measure_body(position.astype(np.float64), head[owner], trunk[owner], places["hips"], places["head"])
+    size = measure_body(position.astype(np.float64), head[owner], trunk[owner], places["hips"], places["head"])
+    if not big_handed:
+        return size, None
+    starts = np.cumsum([0, *(len(part.attributes["POSITION"]) for part in parts[:-1])])
+    corners = [np.arange(len(p.attributes["POSITION"])) if p.indices is None else p.indices for p in parts]
+    triangle = np.concatenate(
+        [c.reshape(-1, 3).astype(np.intp) + start for c, start in zip(corners, starts, strict=True)]
+    )
+    region = np.where(head[owner], REGIONS.index("head"), np.where(trunk[owner], 0, -1))
+    return size, measure_shape(position.astype(np.float64), triangle, region, places)
 
 
 def _chain(chain: SpringChain, joint: dict[int, int]) -> RigChain:

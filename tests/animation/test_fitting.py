@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from game.animation import BodySize, Pose, Rig, fit_to, measure_body
+from game.animation import REGIONS, BodyShape, BodySize, Pose, Rig, figure, fit_to, measure_body, measure_shape
+from game.animation.body_shape import COLUMNS, ROWS, turn_share
+from game.app.rig import load_rig
 from game.core import quaternion as quat
 from game.core.errors import BadInput
 from game.core.humanoid import REFERENCE, TABLE_TOP_M
@@ -41,7 +43,10 @@ def tall() -> dict[str, np.ndarray]:
 
 
 def rig_at(
-    places: dict[str, np.ndarray], turn: dict[str, np.ndarray] | None = None, size: BodySize | None = None
+    places: dict[str, np.ndarray],
+    turn: dict[str, np.ndarray] | None = None,
+    size: BodySize | None = None,
+    shape: BodyShape | None = None,
 ) -> Rig:
     """A rig whose joints stand at places (model space); turn: model-space rest rotations, the identity where none."""
     names = [name for name in REFERENCE.names if name in places]
@@ -59,7 +64,7 @@ def rig_at(
         rest.append(quat.rotate(back, places[name] - (places[names[parent]] if parent >= 0 else 0.0)))
         local.append(quat.multiply(back, world[i]))
     return Rig.from_arrays(
-        names, np.array(list(above.values())), np.array(rest), rest_rotation=np.array(local), size=size
+        names, np.array(list(above.values())), np.array(rest), rest_rotation=np.array(local), size=size, shape=shape
     )
 
 
@@ -180,6 +185,94 @@ def test_missing_bones_are_made_up_by_their_neighbours():
     for side in ("left", "right"):
         np.testing.assert_allclose(found[f"{side}Hand"][:, :3, :3], whole[f"{side}Hand"][:, :3, :3], atol=2e-5)
         np.testing.assert_allclose(found[f"{side}Foot"][:, :3, 3], whole[f"{side}Foot"][:, :3, 3], atol=2e-3)
+
+
+def big_handed(hand: float) -> dict[str, np.ndarray]:
+    """The reference but for its hands."""
+    places = {name: place.copy() for name, place in REST.items()}
+    for name in places:
+        if any(word in name for word in ("Thumb", "Index", "Middle", "Ring", "Little")):
+            wrist = REST[f"{'left' if name.startswith('left') else 'right'}Hand"]
+            places[name] = wrist + hand * (REST[name] - wrist)
+    return places
+
+
+def barrel(radius: float) -> BodyShape:
+    """A body as round as a barrel from the hips to the neck."""
+    chest, hips = REST["chest"], REST["hips"]
+    return BodyShape(
+        {"chest": np.array([0.0, hips[1] - chest[1], 0.0])},
+        {"chest": float(REST["neck"][1] - hips[1])},
+        {"chest": np.full((ROWS, COLUMNS), radius)},
+    )
+
+
+def depth_of_fingers(rig: Rig, pose: Pose, joint: str, shape: BodyShape) -> np.ndarray:
+    """(n,) how deep the deepest finger joint is below a region's surface, metres; along the horizontal."""
+    found = joints(rig, pose)
+    fingers = [name for name in found if any(f in name for f in ("Index", "Middle", "Little", "Thumb"))]
+    place = np.stack([found[name][:, :3, 3] for name in fingers], axis=1) - found[joint][:, None, :3, 3]
+    local = np.einsum("nij,nki->nkj", found[joint][:, :3, :3], place) - shape.centre[joint]
+    row = local[..., 1] / shape.height[joint] * (ROWS - 1)
+    column = np.rint(turn_share(local[..., 0], local[..., 2]) * COLUMNS).astype(int) % COLUMNS
+    inside = (row > 2.5) & (row < ROWS - 3.5)
+    surface = shape.radius[joint][np.clip(np.rint(row).astype(int), 0, ROWS - 1), column]
+    return np.where(inside, surface - np.hypot(local[..., 0], local[..., 2]), -1.0).max(axis=1)
+
+
+def test_big_hands_lie_on_a_big_body_and_not_in_it():
+    pose, shape = take("sadness", 12), barrel(0.17)
+    into = depth_of_fingers(rig_at(big_handed(1.3)), pose, "chest", shape)
+    onto = depth_of_fingers(rig_at(big_handed(1.3), shape=shape), pose, "chest", shape)
+    assert (into > 0.02).mean() > 0.05
+    assert np.percentile(onto, 99) < 0.004
+    assert (onto <= np.maximum(into + 0.004, 0.0)).all()
+
+
+def test_the_body_s_shape_moves_only_hands_bigger_than_the_reference_s():
+    pose = take("sadness", 60)
+    for hand, moved in ((1.05, False), (1.3, True)):
+        free, held = (joints(rig_at(big_handed(hand), shape=s), pose) for s in (None, barrel(0.20)))
+        shift = np.abs(free["leftHand"] - held["leftHand"]).max()
+        assert (shift > 0.01) == moved
+        np.testing.assert_array_equal(free["head"], held["head"])
+        np.testing.assert_array_equal(free["leftFoot"], held["leftFoot"])
+
+
+def test_hands_are_held_off_without_jumps():
+    """What the body pushes grows with the way of the hand into it."""
+    pose = take("sadness", 1)
+    free, held = (joints(rig_at(big_handed(1.3), shape=s), pose) for s in (None, barrel(0.17)))
+    push = held["leftHand"][:, :3, 3] - free["leftHand"][:, :3, 3]
+    assert np.abs(push).max() > 0.01
+    assert np.linalg.norm(np.diff(push, axis=0), axis=1).max() < 0.03
+
+
+def test_a_shape_is_measured_by_height_and_direction():
+    angle, height = (x.ravel() for x in np.meshgrid(np.linspace(0, 2 * np.pi, 97), np.linspace(0.4, 1.0, 61)))
+    radius = 0.15 + 0.05 * (np.cos(angle) > 0.0) * (height < 0.8)
+    outer = np.stack([radius * np.sin(angle), height, radius * np.cos(angle)], axis=1)
+    points = np.vstack([outer, outer * (0.5, 1.0, 0.5)])
+    first = (np.arange(60)[:, None] * 97 + np.arange(96)).ravel()
+    sheet = np.vstack([np.stack([first, first + 1, first + 97], 1), np.stack([first + 1, first + 98, first + 97], 1)])
+    triangle = np.vstack([sheet, sheet + len(outer)])
+    found = measure_shape(points, triangle, np.zeros(len(points), np.intp), REST)
+    assert set(found.radius) == set(REGIONS) - {"head"}
+    spine = found.radius["spine"]
+    middle = slice(3, ROWS - 6)
+    np.testing.assert_allclose(spine[middle, [0, 1, -1]], 0.20, atol=0.002)
+    np.testing.assert_allclose(spine[middle, COLUMNS // 2], 0.15, atol=0.002)
+    assert float(found.centre["spine"][1]) < 0.0
+
+
+def test_daimons_hands_stay_out_of_his_own_clothes():
+    rig, pose = load_rig(ASSETS / "characters" / "daimon.vrm", springs=False), take("sadness", 40)
+    shapes = {REFERENCE.names[figure.FIGURE[row["joint"]]]: row for row in rig.fitting.shapes}
+    assert set(shapes) == set(REGIONS)
+    for name, row in shapes.items():
+        shape = BodyShape({name: row["centre"]}, {name: float(row["height"])}, {name: row["radius"]})
+        assert depth_of_fingers(rig, pose, name, shape).max() < (0.02 if name == "head" else 0.003)
+    assert len(load_rig(ASSETS / "characters" / "genzo.vrm", springs=False).fitting.shapes) == 0
 
 
 def test_outer_finger_joints_curl_with_the_fist():

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from game.animation import Pose, Rig, SpringChain, SpringCollider, skin_loop
+from game.animation.clearance import FINGER, HAND, SHAPE
 from game.animation.fitting import BODY_PART, FIGURE_JOINT, FIGURE_LIMB, FIT
 from game.animation.skin_loop import EYES, FOLD, JOINT, RIG, SPRUNG
 from game.animation.springbones import COLLIDER, PIECE
@@ -90,10 +91,25 @@ def make_rig(
 
 def test_both_sides_mean_the_same_structs() -> None:
     machine = Machine(Path(skin_loop.__file__).with_name("skin.wasm"))
-    count, told = machine.block(1, np.uint32), machine.block(200, np.uint32)
+    count, told = machine.block(1, np.uint32), machine.block(300, np.uint32)
     machine.function("layout", "II")(count.address, told.address)
     wanted: list[int] = []
-    for struct in (JOINT, FOLD, EYES, SPRUNG, PIECE, COLLIDER, RIG, FIGURE_JOINT, FIGURE_LIMB, BODY_PART, FIT):
+    for struct in (
+        JOINT,
+        FOLD,
+        EYES,
+        SPRUNG,
+        PIECE,
+        COLLIDER,
+        RIG,
+        FIGURE_JOINT,
+        FIGURE_LIMB,
+        BODY_PART,
+        SHAPE,
+        FINGER,
+        HAND,
+        FIT,
+    ):
         assert struct.fields is not None
         wanted += [struct.itemsize, *(field[1] for field in struct.fields.values())]
     room = skin_loop.ROOM_BYTES

@@ -95,6 +95,16 @@ void fit_pose(const Fit *fit, Quat *turn, Vec3 *root) {
     found[0] = sub(found[0], fix);
     found[1] = add(found[1], fix);
 
+    // Bigger hands reach deeper where the same palm touches.
+    for (int side = 0; side < 2 && fit->shapes; side++) {
+        Vec3 wrist = sub(found[side], scale(reach[side], fit->hand));
+        Quat hand = reference[fit->limb[side].end].turn;
+        Vec3 push = clear_of_body(fit, side, mine, wrist, hand, turn);
+        // Not into the table.
+        if (push.y < 0) push.y *= 1 - on_table(fit, palm[side]);
+        found[side] = add(found[side], push);
+    }
+
     for (int i = 0; i < LIMBS; i++) {
         const FigureLimb *limb = &fit->limb[i];
         Rigid goal = reference[limb->end];

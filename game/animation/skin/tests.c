@@ -22,10 +22,15 @@ static const uint32_t LAYOUT[] = {
     SIZE(FigureLimb), AT(FigureLimb, above), AT(FigureLimb, bones), AT(FigureLimb, foot_reference),
     AT(FigureLimb, foot),
     SIZE(BodyPart), AT(BodyPart, joint), AT(BodyPart, reference), AT(BodyPart, mine),
+    SIZE(Shape), AT(Shape, joint), AT(Shape, centre), AT(Shape, height), AT(Shape, widest), AT(Shape, around),
+    AT(Shape, radius),
+    SIZE(Finger), AT(Finger, first), AT(Finger, second), AT(Finger, base), AT(Finger, joint), AT(Finger, tip),
+    AT(Finger, radius),
+    SIZE(Hand), AT(Hand, palm), AT(Hand, finger),
     SIZE(Fit), AT(Fit, joint), AT(Fit, limb), AT(Fit, part), AT(Fit, hips_reference), AT(Fit, hips), AT(Fit, palm),
     AT(Fit, leg), AT(Fit, hand), AT(Fit, arm), AT(Fit, table_m), AT(Fit, clear), AT(Fit, middle),
     AT(Fit, beside_body), AT(Fit, low_back), AT(Fit, high_back), AT(Fit, beside_table), AT(Fit, above_table),
-    AT(Fit, low), AT(Fit, together),
+    AT(Fit, low), AT(Fit, together), AT(Fit, shapes), AT(Fit, reach), AT(Fit, own_hand), AT(Fit, shape),
     SIZE(Swing), SIZE(Pull), SIZE(Capsule), SIZE(Quat), SIZE(Mat4),
 };
 
