@@ -57,7 +57,7 @@ class Index:
 
 @dataclass(frozen=True)
 class Items:
-    """A list. count: allowed lengths where not empty; empty_ok: being empty is no finding."""
+    """A list. count: allowed lengths; empty_ok: being empty is no finding."""
 
     of: Shape
     count: tuple[int, ...] = ()
@@ -176,10 +176,10 @@ def check(value: Any, shape: Shape, report: Report, pointer: tuple[str | int, ..
 def _check_items(value: Any, shape: Items, report: Report, pointer: tuple[str | int, ...]) -> None:
     if not isinstance(value, list):
         report.refuse(pointer, expected="a list", seen=_shown(value))
+    if shape.count and len(value) not in shape.count:
+        report.refuse(pointer, expected=f"{' or '.join(map(str, shape.count))} items", seen=len(value))
     if not value and not shape.empty_ok:
         report.note(pointer, "an empty list")
-    elif value and shape.count and len(value) not in shape.count:
-        report.refuse(pointer, expected=f"{' or '.join(map(str, shape.count))} items", seen=len(value))
     for index, item in enumerate(value):
         check(item, shape.of, report, (*pointer, index))
     if shape.unique and len(set(value)) != len(value):

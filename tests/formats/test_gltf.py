@@ -126,6 +126,8 @@ def _path(document: Any, pointer: str) -> tuple[Any, Any]:
         ("/nodes/1/rotation", [0, 0, 0, 0], "a unit quaternion"),
         ("/nodes/0/translation", [1e300, 0, 0], "/nodes/0/translation/0"),
         ("/nodes/0/translation", [0, 0], "3 items but saw 2"),
+        ("/nodes/0/translation", [], "3 items but saw 0"),
+        ("/nodes/2/matrix", [], "16 items but saw 0"),
         ("/nodes/2/translation", [0, 0, 0], "/nodes/2/matrix: a matrix beside"),
         ("/nodes/2/matrix/3", 5, "not an affine matrix"),
         ("/nodes/2/matrix/4", 5, "shear"),
