@@ -9,13 +9,13 @@ from __future__ import annotations
 import multiprocessing
 import random
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from game.app.autoplay import play_with_bodies
 from game.app.autoplay.jobs import BODIES_PER_JOB
 from game.app.bench_rows import Row, row
-from game.app.bench_talk import TALK
+from game.app.bench_talk import patient_talk
 from game.app.body import BodyObserver
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import Seat, Table, seat
@@ -24,7 +24,7 @@ from game.embos import UnitLibrary
 
 __all__ = ["rows", "ten_choices"]
 
-CHOICES, REPEATS = 10, 3
+REPEATS = 3
 WORKERS, WORK_S = 2, 5.0
 
 
@@ -42,11 +42,8 @@ class _AnyLine:
 
 def ten_choices(library: UnitLibrary) -> Seat:
     """Who plays a talk that goes on for ten choices: rounds and patience last, nothing ends it sooner."""
-    assets = load_talk_assets(TALK)
-    market = replace(assets.market, rounds=2 * CHOICES, sudden_end_chance=0.0)
-    patient = replace(assets.person, patience=10.0 * CHOICES)
     layers = {unit.name: unit.layer for unit in library.units}
-    return Seat("any line", "table", replace(assets, market=market, person=patient), _AnyLine, layers)
+    return Seat("any line", "table", patient_talk(), _AnyLine, layers)
 
 
 def _played(observer: BodyObserver, player: Seat, seed: int) -> int:

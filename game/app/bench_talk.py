@@ -1,4 +1,5 @@
-"""Choices per second: the story engine against inkjs on the same talk, and the whole negotiation.
+"""Choices per second: the story engine against inkjs on the same talk, alone and with feelings and market, and whole
+negotiations.
 
 Both sides are timed by what their process took of a processor, compiling and collecting included, so that other work
 on the machine weighs on neither.
@@ -12,21 +13,23 @@ import statistics
 import subprocess
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from game.app.autoplay import play_episode
 from game.app.bench_rows import Row, row
 from game.app.content import load_talk_assets, stall_path
 from game.app.policies import Seat, seat
+from game.app.talk import Choice, TalkAssets, choose, start_talk
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
 from game.story import Chose, Script, Start, advance, begin, load_script
 
-__all__ = ["rows"]
+__all__ = ["patient_talk", "rows"]
 
 TALK = ASSETS / "bench" / "ten_choices.yaml"
 INK = ASSETS / "bench" / "ten_choices.ink"
-REPEATS, TALKS = 7, 60
+CHOICES, REPEATS, TALKS = 10, 7, 60
 
 # The same draws, by a generator of small whole numbers that costs neither side much, and the same count: random choices
 # until nothing can be chosen any more.
@@ -87,6 +90,25 @@ def story_choices(script: Script, first_seed: int) -> int:
     return made
 
 
+def patient_talk() -> TalkAssets:
+    """The bench talk with a shopkeeper who stays for all ten choices: nothing ends it sooner."""
+    assets = load_talk_assets(TALK)
+    market = replace(assets.market, rounds=2 * CHOICES, sudden_end_chance=0.0)
+    return replace(assets, market=market, person=replace(assets.person, patience=10.0 * CHOICES))
+
+
+def felt_choices(assets: TalkAssets, first_seed: int) -> int:
+    """As ``story_choices``, each choice with what the shopkeeper feels at it and what the market makes of it."""
+    made, draw = 0, 1
+    for seed in range(first_seed, first_seed + TALKS):
+        state = start_talk(assets, "cup", seed, purse=1000)
+        while not state.ended:
+            draw = (draw * 75 + 74) % 65537
+            state = choose(assets, state, Choice(state.beat.choices[draw * 4 // 65537].id))
+            made += 1
+    return made
+
+
 def _rates(play: Callable[[int], int], repeats: int) -> list[float]:
     """What ``play(repeat)`` counts per second of processor time, once warm."""
     rates = []
@@ -111,6 +133,12 @@ def rows(inkjs: Path | None) -> list[Row]:
     ]  # fmt: skip
     if ink is not None:
         found.append(row("autoplay: inkjs, the same talk, choices/s", ink, unit="/s", more_is_better=True))
+    patient = patient_talk()
+    found.append(
+        row("autoplay: the same talk with feelings and market, choices/s",
+            _rates(lambda repeat: felt_choices(patient, repeat * TALKS), REPEATS), unit="/s", floor=floor,
+            more_is_better=True)
+    )  # fmt: skip
     assets = load_talk_assets(stall_path("flea"))
     for policy in ("random", "oracle"):
         found += _negotiation(policy, seat(assets, policy))

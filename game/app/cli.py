@@ -63,10 +63,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     # What is imported stays: looking for garbage among it would take a twentieth of the start.
     gc.disable()
     try:
-        args = build_parser(words[0]).parse_args(words)
-    finally:
-        gc.enable()
-    try:
+        try:
+            args = build_parser(words[0]).parse_args(words)
+        finally:
+            gc.enable()
         return int(args.run(args))
     except GameError as error:
         print(f"error: {error}", file=sys.stderr)

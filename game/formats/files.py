@@ -10,7 +10,7 @@ from pathlib import Path
 
 from game.core.errors import BadInput, Where
 
-__all__ = ["check_regular", "decode_utf8", "read_bytes", "write_bytes", "write_text"]
+__all__ = ["check_regular", "check_replaceable", "decode_utf8", "read_bytes", "write_bytes", "write_text"]
 
 
 def read_bytes(path: Path | str, *, max_bytes: int, what: str = "file") -> bytes:
@@ -54,6 +54,12 @@ def decode_utf8(data: bytes, path: Path | str) -> str:
     return text.removeprefix("\ufeff")
 
 
+def check_replaceable(path: Path) -> None:
+    """Raises BadInput for a device or pipe: writing whole would put a file in its place (``/dev/stdout`` for root)."""
+    if (path.exists() and not path.is_file() and not path.is_dir()) or str(path.absolute().parent) == "/dev":
+        raise BadInput("cannot write this file", where=Where(path), expected="a regular file", seen="a device or pipe")
+
+
 def write_text(path: Path, text: str, *, make_folder: bool = False, durable: bool = False) -> None:
     """write_bytes of UTF-8 text."""
     write_bytes(path, text.encode("utf-8"), make_folder=make_folder, durable=durable)
@@ -67,6 +73,7 @@ def write_bytes(
     make_folder: make the folders that are missing; durable: on the disk before the old file goes, so that a power cut
     leaves one of them; keep_rights: the file stands already, and stays as open as it was.
     """
+    check_replaceable(path)
     temporary = ""
     try:
         if make_folder:

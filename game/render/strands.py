@@ -1,4 +1,7 @@
-"""Strands of hair: each in a tone of its own, its highlight a little higher or lower than its neighbour's."""
+"""Strands of hair: each in a tone of its own, its highlight a little higher or lower than its neighbour's.
+
+Curls that grow together over a whole head are no strand: they keep the palette's tone.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,8 @@ __all__ = ["strand_terms"]
 _TONE = (-0.10, 0.06)
 _SHIFT = 0.020
 _WELD_M = 1e-5
+_WHOLE_HEAD_M = 0.30
+"""Sum of the standard deviations along the axes; a long lock's is 0.24, a head of curls' 0.34."""
 
 
 def strand_terms(
@@ -29,10 +34,16 @@ def strand_terms(
     place = np.unique(grid @ np.array([1, 1 << 20, 1 << 40]), return_inverse=True)[1].ravel()
     strand = loose_pieces(place[triangle])[place]
     count = np.bincount(strand)
-    middle = np.stack([np.bincount(strand, position[:, i]) for i in range(3)], axis=1) / count[:, None]
+    middle, square = (
+        np.stack([np.bincount(strand, values[:, i]) for i in range(3)], axis=1) / count[:, None]
+        for values in (position, position.astype(np.float64) ** 2)
+    )
+    spread = np.sqrt(np.maximum(square - middle**2, 0.0)).sum(axis=1)
+    apart = spread < _WHOLE_HEAD_M
     # Waves short enough that neighbours differ, long enough that a coarser mesh of the strand draws the same.
     one, other = (0.5 + 0.5 * np.sin(middle @ np.array(way)) for way in ((61.0, 43.0, 57.0), (-47.0, 67.0, 39.0)))
-    tone = _TONE[0] + (_TONE[1] - _TONE[0]) * one
+    tone = np.where(apart, _TONE[0] + (_TONE[1] - _TONE[0]) * one, 0.0)
+    shift = np.where(apart, _SHIFT * (2.0 * other - 1.0), 0.0)
     azimuth, height = hair.T
     wave = 0.030 * np.sin(azimuth * 13.0) + 0.012 * np.sin(azimuth * 37.0 + 1.0)
-    return np.stack([tone[strand], height + wave + _SHIFT * (2.0 * other[strand] - 1.0)], axis=1).astype(np.float32)
+    return np.stack([tone[strand], height + wave + shift[strand]], axis=1).astype(np.float32)

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -115,6 +116,33 @@ def test_a_stopped_run_keeps_what_is_done_and_goes_on_to_the_same_bytes(straight
     assert [p.name for p in tmp_path.iterdir()] == ["log.jsonl"]
 
 
+def test_an_own_policy_that_was_edited_is_another_run(tmp_path: Path) -> None:
+    own, path = tmp_path / "own.py", tmp_path / "log.jsonl"
+    source = 'SEES = "table"\ndef move(view, memory, rng):\n    return {"choice": "wait"}\n'
+    own.write_text(source)
+    plan = Plan(("flea",), (str(own),), 30, 5, log="plain", per_job=5)
+    play(plan, Stopping(), out=path, progress=quiet)
+    own.write_text(source.replace("wait", "leave"))
+    with pytest.raises(BadInput, match="another contents"):
+        play(plan, Crew(), out=path, resume=True, progress=quiet)
+
+
+def test_a_worker_that_stands_elsewhere_and_lives_on_plays_the_files_as_they_are_now(tmp_path: Path) -> None:
+    own = tmp_path / "own.py"
+    source = 'SEES = "table"\ndef move(view, memory, rng):\n    return {"choice": "wait"}\n'
+    moves = set()
+    for act in ("wait", "leave"):
+        own.write_text(source.replace("wait", act))
+        job = next(Plan(("flea",), ("own.py",), 2, 5, log="plain", folder=str(tmp_path)).jobs())
+        row = json.loads(work(job).rows.splitlines()[0])
+        assert row["policy"] == "own.py"
+        moves.add(row["choice"])
+    assert moves == {"wait", "leave"}
+    own.write_text(source + "# another\n")
+    with pytest.raises(BadInput, match="expected the same game but saw 'other contents'"):
+        work(replace(job, made=job.made[:-1] + "x"))
+
+
 def test_only_the_same_run_is_gone_on_with(tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
     play(PLAN, Stopping(), out=path, progress=quiet)
@@ -160,10 +188,49 @@ def test_ctrl_c_stops_cleanly_with_what_is_done(tmp_path: Path) -> None:
     assert done % 100 == 0
 
 
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+def test_ctrl_c_waits_for_no_job(monkeypatch) -> None:
+    """Those with bodies take a minute; a second Ctrl-C while they were waited for left everything hanging."""
+    before = set(multiprocessing.active_children())
+
+    def interrupted(*args: object, **kwargs: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("game.app.autoplay.executors.wait", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        next(Crew(2, task=_sleep_for_an_hour).results(PLAN.jobs()))
+    assert not set(multiprocessing.active_children()) - before
+
+
+def _sleep_for_an_hour(job: Job) -> Result:
+    time.sleep(3600.0)
+    return Result(job.number)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs signals")
+def test_workers_end_with_a_run_that_is_killed_and_play_what_it_plays(tmp_path: Path) -> None:
+    """Also from a folder where another ``game`` lies; what was kept is gone on with."""
+    (tmp_path / "game").mkdir()
+    (tmp_path / "game" / "__init__.py").write_text("")
+    state = tmp_path / "log.jsonl.part.json"
+    command = [sys.executable, str(ROOT / "run_game.py"), "autoplay", "--episodes", "100000", "--workers", "2"]
+    run = subprocess.Popen(
+        [*command, "--out", "log.jsonl"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    for _ in range(600):
+        if state.exists() or run.poll() is not None:
+            break
+        time.sleep(0.1)
+    run.kill()
+    # Whoever lives on holds the other end of these pipes.
+    run.communicate(timeout=60)
+    assert json.loads(state.read_text())["run"]["talks"] >= 100
+
+
 def test_a_dask_cluster_gives_the_very_same(straight, tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed", reason="the extra cluster is not installed")
     path = tmp_path / "log.jsonl"
-    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=2, processes=False, dashboard_address=None)
+    cluster = distributed.LocalCluster(n_workers=2, threads_per_worker=2, processes=False, dashboard_address=":0")
     try:
         run = play(PLAN, Crew(2, cluster.scheduler_address), out=path, progress=quiet)
     finally:
@@ -218,6 +285,23 @@ def test_bad_arguments_give_one_line(capsys, words: list[str], says: str) -> Non
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert says in error
+
+
+@pytest.mark.parametrize("option", ["--out", "--report", "--junit", "--plots", "--record"])
+def test_a_place_where_nothing_can_be_written_is_told_before_hours_are_played(tmp_path, capsys, option: str) -> None:
+    (tmp_path / "file").write_text("")
+    wrong = [tmp_path / "file" / "into"]
+    if option not in {"--plots", "--record"}:
+        wrong = [tmp_path, tmp_path / "none" / "x"]
+    if hasattr(os, "mkfifo"):
+        # As root, a file would have taken the place of a pipe or device.
+        os.mkfifo(tmp_path / "pipe")
+        wrong.append(tmp_path / "pipe")
+    for path in wrong:
+        assert main(["autoplay", "--episodes", "1000000", option, str(path)]) == 2
+        assert "cannot write" in capsys.readouterr().err
+    assert {path.name for path in tmp_path.iterdir()} <= {"file", "pipe"}
+    assert not (tmp_path / "pipe").is_file()
 
 
 def test_workers_are_as_many_as_asked() -> None:

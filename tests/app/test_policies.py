@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 
 from game.app.autoplay import play_episode
 from game.app.autoplay.episodes import sit_down
+from game.app.autoplay.jobs import Job, work
 from game.app.content import load_talk_assets, stall_path
 from game.app.loading import load_planner
 from game.app.policies import (
@@ -263,7 +265,11 @@ def test_an_own_policy_that_reaches_out_is_refused_with_its_line(tmp_path: Path,
     [
         ("    while True: pass", "within 0.6 s"),
         ("    return {'choice': 'wait', 'offer': 'much'}", "whole number"),
-        ("    return 1 / 0", "ZeroDivisionError"),
+        ("    return 1 / 0", r"own\.py:3: policy: expected a move but saw 'ZeroDivisionError.*episode 0, move 1 of"),
+        ("    raise SystemExit(3)", "SystemExit: 3"),
+        ("    return None", "move gave None"),
+        ("    return {'choice': 'x' * 20000}", "an answer of 20014 characters"),
+        ("    return {'choice': 'dance'}", r"saw 'dance' \(episode 0, move 1 of"),
         ("    x = [0] * 10**9", "MemoryError"),
     ],
 )
@@ -286,15 +292,19 @@ def test_an_own_policy_that_fails_is_told_in_one_line(assets, tmp_path: Path, mo
         "import functools\nx = functools.update_wrapper",
         "import statistics\nx = statistics.random",
         "import collections\nx = collections.abc",
-        "x = print",
         "x = id(1)",
+        "x = print",
     ],
 )
 def test_what_modules_import_themselves_is_not_handed_on(tmp_path: Path, reach: str) -> None:
     path = tmp_path / "own.py"
     path.write_text(f'SEES = "table"\n{reach}\ndef move(view, memory, rng):\n    return {{"choice": "got out"}}\n')
     with pytest.raises(BadInput, match=r"AttributeError|NameError|is not allowed"):
-        custom.OwnPolicy.load(path).sit(random.Random(1)).process.ask({})
+        ask(custom.OwnPolicy.load(path).sit(random.Random(1)))
+
+
+def ask(player) -> dict[str, object]:
+    return player.process.ask(player.talk, {})
 
 
 HOARDER = """
@@ -321,15 +331,50 @@ def move(view, memory, rng):
 """
 
 
+SIDE_BY_SIDE = """
+SEES = "body"
+def move(view, memory, rng):
+    memory["moves"] = memory.get("moves", 0) + 1
+    assert memory["moves"] == view["table"]["round"] + 1, "the memory of another talk"
+    lines = [line["id"] for line in view["table"]["lines"] if line["act"] not in ("offer", "leave", "wait")]
+    return {"choice": lines[int(rng.random() * len(lines))]}
+"""
+
+
+def test_own_policies_side_by_side_have_each_their_memory_and_chance(tmp_path: Path, monkeypatch) -> None:
+    """Those who look at bodies are played so: what a talk comes to must not hang on how many are played with it."""
+    monkeypatch.setattr(custom, "TALKS", 3)
+    path = tmp_path / "own.py"
+    path.write_text(SIDE_BY_SIDE)
+    rows = [work(Job(0, "flea", str(path), 3, 0, count, True, log="plain")).rows for count in (2, 5)]
+    first = [row for row in rows[1].splitlines() if json.loads(row)["episode"] < 2]
+    assert rows[0].splitlines() == first
+
+
+def test_an_own_policy_leaves_no_folder_behind_when_nobody_ends_it(tmp_path: Path) -> None:
+    """As in the worker of a pool, which ends without a word."""
+    path = tmp_path / "own.py"
+    path.write_text(OWN)
+    player = custom.OwnPolicy.load(path).sit(random.Random(1))
+    process = player.process
+    folder = Path(process.folder.name)
+    assert folder.is_dir()
+    process.popen.stdin.close()
+    assert process.popen.wait(30) == 0
+    assert not folder.exists()
+
+
 def test_nothing_an_own_policy_hoards_outlasts_a_talk(tmp_path: Path) -> None:
     """Which worker plays which talks must not matter, so no talk may know of another."""
     path = tmp_path / "own.py"
     path.write_text(HOARDER)
     policy = custom.OwnPolicy.load(path)
     for _ in range(3):
-        process = policy.sit(random.Random(1)).process
-        assert process.ask({}) == {"choice": ",".join("0" * 8)}
-        assert process.ask({}) == {"choice": ",".join("1" * 8)}, "within a talk it may remember"
+        player, beside = (policy.sit(random.Random(seed)) for seed in (1, 2))
+        assert ask(player) == {"choice": ",".join("0" * 8)}
+        # Its own things it may remember within a talk, also while others are played side by side.
+        assert ask(player) == {"choice": "1,1,1,1,1,0,0,0"}
+        assert ask(beside) == {"choice": ",".join("0" * 8)}
 
 
 def test_moves_that_are_not_on_the_table_are_refused_whoever_makes_them(assets) -> None:

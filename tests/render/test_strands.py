@@ -32,6 +32,19 @@ def test_a_strand_has_one_tone_across_its_seams_and_its_neighbour_another() -> N
     assert abs(one[0, 1] - other[0, 1]) > 0.002
 
 
+def test_a_whole_head_of_curls_keeps_its_palette_wherever_it_is() -> None:
+    ball = np.random.default_rng(5).normal(size=(400, 3))
+    head = (0.2 * ball / np.linalg.norm(ball, axis=1, keepdims=True)).astype(np.float32)
+    fan = np.stack([np.zeros(398), np.arange(1, 399), np.arange(2, 400)], axis=1).astype(np.uint32)
+    hair = np.zeros((400, 2))
+    terms = [strand_terms(head + np.float32(up), fan, hair) for up in (1.00, 1.03, 1.31)]
+    assert all((each[:, 0] == 0.0).all() for each in terms)
+    np.testing.assert_array_equal(terms[0], terms[1])
+    np.testing.assert_array_equal(terms[0], terms[2])
+    lock = strand_terms(head * np.float32(0.3), fan, hair)
+    assert np.abs(lock[:, 0]).max() > 0.0
+
+
 def hair_tones(mesh: CharacterMesh) -> tuple[np.ndarray, np.ndarray]:
     """Places and tones of the vertices of hair."""
     runs = [run for run in mesh.runs if KINDS.index(run.kind) == 0]

@@ -14,6 +14,7 @@ from game.core.paths import ASSETS
 from game.formats import GltfFile, Vrm, read_gltf, read_vrm
 from game.formats.vrm_model import REQUIRED_BONES
 from game.tools.modelling.character import Character
+from game.tools.modelling.curls import grown
 from game.tools.modelling.export import LEVELS
 from game.tools.modelling.face_atlas import COLUMNS, EXPRESSIONS, ROWS, cell_of
 from game.tools.modelling.mesh import Mesh
@@ -237,6 +238,43 @@ def test_the_builder_still_makes_the_committed_hair(vrm, character):
         made = character.figure.stretched(mesh, weights).position[-2:]
         distance, _ = committed.query(made)
         assert distance.max() < 1e-4
+
+
+def test_the_builder_still_makes_the_committed_curls(vrm, character):
+    """Where a lock stands out of the hair, the committed hair reaches its tip and goes no further."""
+    hair = character.hair
+    if not hair.spec.curls:
+        return
+    committed = next(p for p in all_primitives(vrm.gltf) if material_extras(vrm.gltf, p)["class"] == "hair")
+    tree = cKDTree(committed.attributes["POSITION"])
+    rooted = [lock.path[-1] for lock in grown(hair.spec.curls, hair.on_scalp)]
+    tips = np.array(rooted + [lock.path[-1] for lock in grown(hair.spec.beard.curls, hair.on_skin)])
+    standing = tips[hair.curls.field(tips) > -0.004]
+    assert len(standing) >= 25
+    weights = hair.curly_weights(standing, character.binder)
+    distance, _ = tree.query(
+        character.figure.stretched(Mesh(standing, standing, np.zeros((0, 3), int)), weights).position
+    )
+    assert np.percentile(distance, 90) < 0.006
+
+
+def test_a_beard_leaves_the_mouth_bare_and_stays_on_the_skin(vrm, character):
+    """No hair before the mouth; what grows on the jaw does not swing."""
+    style, spec = character.spec.face, character.spec.hair
+    if spec.beard is None:
+        return
+    hair = next(p for p in all_primitives(vrm.gltf) if material_extras(vrm.gltf, p)["class"] == "hair")
+    size = character.spec.proportions.head
+    centre = joint_place(character, "head") + HEAD_CENTRE_OFFSET * size
+    x, y, z = ((hair.attributes["POSITION"] - centre) / size * 1000.0).T
+    front = z > 60.0
+    mouth = front & (np.abs(x) < 28.0) & (y < style.mouth_y + 3.0) & (y > style.mouth_y - 20.0)
+    assert not mouth.any()
+    chin = front & (y < style.mouth_y - 35.0) & (y > style.mouth_y - 90.0)
+    assert chin.sum() > 50
+    joint = vrm.gltf.skins[0].joints.index(vrm.bones["head"])
+    on_head = (hair.attributes["WEIGHTS_0"] * (hair.attributes["JOINTS_0"] == joint)).sum(axis=1)
+    np.testing.assert_allclose(on_head[chin], 1.0, atol=0.01)
 
 
 def test_left_and_right_are_bound_alike(character):

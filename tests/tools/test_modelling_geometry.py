@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from game.core.paths import ASSETS
+from game.tools.modelling.cap import Cap
+from game.tools.modelling.curls import CurlyMass, grown, overgrown
 from game.tools.modelling.fields import capsule, cone, ellipsoid, gradient, project, smooth_min, sphere, union
 from game.tools.modelling.lofts import lathe, loft, rounded_box, sheet, smooth_curve
 from game.tools.modelling.mesh import Mesh, joined, split_at_level, vertex_normals
+from game.tools.modelling.spec import load_character
+from game.tools.modelling.spec_hair import CurlSpec
 from game.tools.modelling.surface import Sculpt
 
 
@@ -112,3 +119,55 @@ def test_mirroring_and_joining_keep_normals_outward():
     assert signed_volume(both) == pytest.approx(2 * signed_volume(box))
     facing = (vertex_normals(both.position, both.triangle) * both.normal).sum(1)
     assert facing.min() > 0.5
+
+
+def on_ball(azimuth_deg: np.ndarray, polar_deg: np.ndarray, lift_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    a, p = np.radians(azimuth_deg), np.radians(polar_deg)
+    out = np.stack([np.sin(a) * np.sin(p), np.cos(p), np.cos(a) * np.sin(p)], axis=1)
+    return out * (0.06 + lift_m)[:, None], out
+
+
+def test_curls_grow_out_of_one_body_and_keep_their_tips_in_coarse_meshes():
+    row = CurlSpec((-60.0, 60.0), (70.0, 70.0), 3, 0.07, 0.022, 0.012, roll_deg=50.0)
+    locks = list(grown([row], on_ball))
+    box = np.full(3, 0.12)
+    mass = CurlyMass(overgrown(sphere((0, 0, 0), 0.06), locks), sphere((0, 0, 0), 0.04), -box, box)
+    for target in (4000, 900):
+        mesh = mass.mesh(target)
+        assert len(mesh.triangle) == pytest.approx(target, rel=0.1)
+        assert open_edges(mesh) == 0
+        assert signed_volume(mesh) > 4 / 3 * np.pi * 0.06**3
+        reach = np.linalg.norm(mesh.position[None] - np.array([k.path[-1] for k in locks])[:, None], axis=2).min(axis=1)
+        assert reach.max() < 0.006
+        corner = mesh.position[mesh.triangle]
+        facing = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        assert ((facing * mesh.normal[mesh.triangle].sum(axis=1)).sum(axis=1) > 0).mean() > 0.97
+
+
+def test_what_lies_in_the_head_has_no_triangles():
+    box = np.full(3, 0.12)
+    whole = CurlyMass(sphere((0, 0, 0), 0.06), sphere((0, 0, -0.05), 0.001), -box, box).mesh(800)
+    half = CurlyMass(sphere((0, 0, 0), 0.06), sphere((0, 0, -0.1), 0.1), -box, box).mesh(800)
+    assert whole.position[:, 2].min() < -0.059
+    assert half.position[:, 2].min() > -0.045
+    assert half.position[:, 2].max() > 0.059
+
+
+def test_hair_turns_its_hook_the_way_it_is_told():
+    row = CurlSpec((0.0, 0.0), (90.0, 90.0), 1, 0.06, 0.02, 0.0, turns=0.4, hand=1.0, roll_deg=0.0, uneven=0.0)
+    (left,), (right,) = grown([row], on_ball), grown([replace(row, hand=-1.0)], on_ball)
+    assert left.path[-1, 0] > left.path[:, 0].min() + 0.005
+    np.testing.assert_allclose(right.path * (-1, 1, 1), left.path, atol=1e-12)
+    assert left.radius[-1] < 0.3 * left.radius.max()
+    (out,) = grown([replace(row, roll_deg=90.0)], on_ball)
+    assert np.linalg.norm(out.path, axis=1).max() > 0.07 > np.linalg.norm(left.path, axis=1).max()
+
+
+def test_a_cap_keeps_its_dome_at_every_level_of_detail():
+    cap = Cap(load_character(ASSETS / "characters" / "daimon.yaml").cap, np.zeros(3))
+    crown = cap.crown
+    tall = np.ptp(crown.mesh(2600).position @ cap.turn, axis=0)
+    for target in (600, 345, 174):
+        mesh = crown.mesh(target)
+        assert len(mesh.triangle) == pytest.approx(target, rel=0.05)
+        np.testing.assert_allclose(np.ptp(mesh.position @ cap.turn, axis=0), tall, atol=0.004)

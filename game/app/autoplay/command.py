@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from functools import partial
 from pathlib import Path
@@ -30,6 +31,7 @@ from typing import Any
 from game.app.autoplay.comparisons import Comparison, compared
 from game.app.autoplay.coverage import covered
 from game.app.autoplay.executors import Crew, workers_of
+from game.app.autoplay.places import check_places
 from game.app.autoplay.progress import Progress
 from game.app.autoplay.runs import Plan, Run, play
 from game.app.content import load_talk_assets, stall_path
@@ -120,9 +122,16 @@ def run(args: argparse.Namespace) -> int:
         stalls, _populations(args.policy or ["random"]), args.episodes, args.seed, args.body, args.mode,
         "" if args.out is None else "gzip" if args.out.suffix == ".gz" else "plain", judged, visits=args.visits,
         record="" if args.record is None else str(args.record.resolve()),
+        # Dask's workers stand elsewhere.
+        folder=os.getcwd() if args.dask else "",
     )  # fmt: skip
     if requirements is not None:
         check_played(requirements, plan.populations, plan.visits)
+    check_places(args.out, args.record, args.plots, [args.junit, args.report])
+    if args.report is not None or args.plots is not None:
+        from game.tools.reports import load_matplotlib
+
+        load_matplotlib()
     crew = Crew(workers_of(args.workers), args.dask)
     bar = partial(Progress, show=True if args.progress else None)
     done = play(plan, crew, out=args.out, resume=args.resume, progress=bar)

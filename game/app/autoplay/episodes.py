@@ -50,8 +50,12 @@ class Talk:
                 f"episode {self.episode}", expected=f"an end within {MAX_MOVES} moves", seen=self.state.beat.node
             )
         view = self.seat.eyes.view(self.seat.sees, self.state, signs, quiet)
-        move = self.player.move(view)
-        after = choose(self.seat.assets, self.state, move)
+        try:
+            move = self.player.move(view)
+            after = choose(self.seat.assets, self.state, move)
+        except BadInput as error:
+            when = f"episode {self.episode}, move {len(self.decisions) + 1} of {self.seat.name}"
+            raise BadInput(f"{error} ({when})") from None
         self.decisions.append(Decision(self.state, after, move, seen))
         self.state = after
 

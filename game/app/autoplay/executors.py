@@ -5,10 +5,13 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from multiprocessing import connection
+from multiprocessing.process import BaseProcess
 
 from game.app.autoplay.jobs import Job, Result, work
 from game.core.errors import BadInput
@@ -32,19 +35,49 @@ def workers_of(text: str) -> int:
 
 
 def _begin_worker() -> None:
-    # Ctrl-C is for the one who hands out the work; one thread of arithmetic per worker.
+    # Ctrl-C is for the one who hands out the work.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    giver = multiprocessing.parent_process()
+    if giver is not None:
+        threading.Thread(target=_end_with, args=(giver.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    """Whoever hands out the work may be killed: nobody waits for more of it then."""
+    connection.wait([sentinel])
+    os._exit(1)
 
 
 def _processes(workers: int) -> Executor:
+    # One thread of arithmetic per worker.
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
-    # Never a plain fork: what this process holds (threads, GL) must not be copied. A fork server reads the code once.
+    # Never a plain fork: what this process holds (threads, GL) must not be copied.
     known = multiprocessing.get_all_start_methods()
     context = multiprocessing.get_context("forkserver" if "forkserver" in known else "spawn")
     if "forkserver" in known:
-        context.set_forkserver_preload(["game.app.autoplay.jobs"])
+        # Not there on Windows.
+        from multiprocessing import forkserver
+
+        # The server must read none of the game: it would look where it stands (python 3.11 keeps our path from it), and
+        # find another copy there, or the one that is installed. Workers take the path of this process.
+        context.set_forkserver_preload([])
+        with _deaf_to_ctrl_c():
+            forkserver.ensure_running()
     return ProcessPoolExecutor(workers, context, initializer=_begin_worker)
+
+
+@contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """What is started here inherits it; else Ctrl-C would find workers at their imports, and be told at length."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @dataclass
@@ -57,6 +90,7 @@ class Crew:
     reborn: int = 0
     _executor: Executor | None = field(default=None, repr=False)
     _close: Callable[[], None] | None = field(default=None, repr=False)
+    _others: frozenset[BaseProcess] = field(default=frozenset(), repr=False)
 
     def results(self, jobs: Iterator[Job]) -> Generator[Result, None, None]:
         """Results in the order in which they are done. The jobs of a worker that died are done again."""
@@ -68,7 +102,7 @@ class Crew:
         pending: dict[Future[Result], Job] = {}
         tries: dict[int, int] = {}
         again: list[Job] = []
-        more = True
+        more, whole = True, False
         try:
             while more or pending or again:
                 while len(pending) < self.workers * _AHEAD and (again or more):
@@ -106,10 +140,12 @@ class Crew:
                     self.reborn += 1
                     self._stop()
                     self._start()
+            whole = True
         finally:
             for future in pending:
                 future.cancel()
-            self._stop()
+            # What still runs (bodies may take a minute) is thrown away: nobody waits for it.
+            self._stop(kill=not whole)
 
     def _submit(self, job: Job) -> Future[Result]:
         assert self._executor is not None
@@ -126,9 +162,13 @@ class Crew:
 
             self._executor, self.workers, self._close = dask_executor(self.dask, self.workers)
         else:
+            self._others = frozenset(multiprocessing.active_children())
             self._executor = _processes(self.workers)
 
-    def _stop(self) -> None:
+    def _stop(self, *, kill: bool = False) -> None:
+        if kill and not self.dask:
+            for process in frozenset(multiprocessing.active_children()) - self._others:
+                process.kill()
         if self._executor is not None:
             with suppress(Exception):
                 self._executor.shutdown(wait=not self.dask, cancel_futures=True)

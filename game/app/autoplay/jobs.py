@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import gzip
+import platform
 import random
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from threading import get_ident
 from typing import Any
 
 from game.animation import Mode
+from game.app.autoplay.contents import code_hash, content_hash, there
 from game.app.autoplay.episodes import Decision, play_episode, play_with_bodies
 from game.app.autoplay.outings import Street, hears_news, play_outing, play_outings_with_bodies
 from game.app.autoplay.rows import log_lines
@@ -43,7 +45,7 @@ class Job:
     """Everything a worker has to know. stall: name or path; population: a mixture of policies as text.
 
     log: whether rows are wanted, ``plain`` or ``gzip``; cover: whether every condition is listened to. visits: talks of
-    an episode.
+    an episode. folder: where names of files start; made: hashes of the code and contents that it was given out with.
     """
 
     number: int
@@ -58,6 +60,13 @@ class Job:
     cover: bool = False
     visits: int = 1
     record: str = ""
+    folder: str = ""
+    made: str = ""
+
+    @property
+    def at(self) -> str:
+        """The stall, from wherever this is played."""
+        return there(self.folder, self.stall)
 
     @property
     def talks(self) -> int:
@@ -79,10 +88,10 @@ class Result:
     rows: bytes = b""
 
 
-def needs_bodies(population: str) -> bool:
-    """Whether some policy of a population looks at bodies."""
+def needs_bodies(population: str, folder: str = "") -> bool:
+    """Whether some policy of a population looks at bodies. folder: where names of files start."""
     return any(
-        name in {"body", "reader"} or (name.endswith(".py") and _own_looks_at_bodies(name))
+        name in {"body", "reader"} or (name.endswith(".py") and _own_looks_at_bodies(there(folder, name)))
         for name, _ in mixture_of(population).shares
     )
 
@@ -95,30 +104,43 @@ def _own_looks_at_bodies(name: str) -> bool:
     return OwnPolicy.load(Path(name)).sees in {"body", "reader"}
 
 
-# A worker reads what it needs once, each of its threads for itself; what a job gives depends on the job alone.
+@lru_cache(maxsize=64)
+def _check_made(made: str, stall: str, population: str, folder: str) -> None:
+    """Raises BadInput where this machine would play something else than what was given out."""
+    here = f"{code_hash()} {content_hash((stall,), (population,), folder)}"
+    if made != here:
+        what = "code (start it anew if it was changed)" if made.split()[0] != here.split()[0] else "contents"
+        raise BadInput(f"worker on {platform.node()}", expected="the same game", seen=f"other {what}")
+
+
+# A worker reads what it needs once for one state of the contents (Dask's live on), each of its threads for itself;
+# what a job gives depends on the job alone.
 @lru_cache(maxsize=8)
-def _assets(stall: str, cover: bool, thread: int) -> tuple[TalkAssets, ConditionTrace | None]:
+def _assets(stall: str, cover: bool, made: str, thread: int) -> tuple[TalkAssets, ConditionTrace | None]:
     assets = load_talk_assets(stall_path(stall))
     return assets, ConditionTrace(assets.script) if cover else None
 
 
 @lru_cache(maxsize=4)
-def _observer(mode: Mode, explain: bool, thread: int) -> BodyObserver:
+def _observer(mode: Mode, explain: bool, made: str, thread: int) -> BodyObserver:
     return BodyObserver.load(mode, explain=explain)
 
 
 @lru_cache(maxsize=32)
-def _seat(assets: TalkAssets, policy: str, bodies: bool, thread: int) -> Seat:
+def _seat(assets: TalkAssets, policy: str, folder: str, bodies: bool, made: str, thread: int) -> Seat:
     # Of these very assets: a seat that outlived them would play where nobody counts.
+    name = there(folder, policy)
+    if name != policy:
+        return replace(_seat(assets, name, "", bodies, made, thread), name=policy)
     if not bodies:
         return seat(assets, policy)
-    observer = _observer("full", False, thread)
+    observer = _observer("full", False, made, thread)
     habit = habits_of(assets, observer) if policy == "reader" else None
     return seat(assets, policy, library=observer.planner.library, habit=habit)
 
 
 @lru_cache(maxsize=8)
-def _content(stall: str) -> dict[str, str]:
+def _content(stall: str, made: str) -> dict[str, str]:
     return content_hashes(watched_files(load_talk_assets(stall_path(stall)).script))
 
 
@@ -127,7 +149,7 @@ def _record(job: Job, policy: str, episode: int, decisions: list[Decision]) -> N
     moves = [(decision.before, decision.choice) for decision in decisions]
     who = re.sub(r"[^0-9A-Za-z_-]+", "_", f"{Path(job.stall).stem}-{policy}-{job.seed}")
     path = Path(job.record) / f"{who}-{episode:06d}.jsonl"
-    write_talk(path, job.stall, policy, moves, decisions[-1].after, _content(job.stall))
+    write_talk(path, job.stall, policy, moves, decisions[-1].after, _content(job.at, job.made))
 
 
 def _players(job: Job, assets: TalkAssets) -> list[Seat]:
@@ -136,18 +158,18 @@ def _players(job: Job, assets: TalkAssets) -> list[Seat]:
         mixture.draw(random.Random(f"who {job.seed} {episode}").random())
         for episode in range(job.first, job.first + job.count)
     ]
-    return [_seat(assets, name, job.bodies, get_ident()) for name in names]
+    return [_seat(assets, name, job.folder, job.bodies, job.made, get_ident()) for name in names]
 
 
 @lru_cache(maxsize=8)
-def _street(stall: str, thread: int) -> Street:
+def _street(stall: str, made: str, thread: int) -> Street:
     """The market; who walks it between visits talks to the others as chance has it."""
-    bazaar, script = load_bazaar(), _assets(stall, False, thread)[0].script
+    bazaar, script = load_bazaar(), _assets(stall, False, made, thread)[0].script
     if script.stall not in bazaar.stalls or not hears_news(script):
         return Street(bazaar)
     known = {path.stem for path in shipped_stalls()} - {script.stall}
-    others = [_assets(name, False, thread)[0] for name in bazaar.stalls if name in known]
-    return Street(bazaar, tuple(_seat(assets, "random", False, thread) for assets in others))
+    others = [_assets(name, False, made, thread)[0] for name in bazaar.stalls if name in known]
+    return Street(bazaar, tuple(_seat(assets, "random", "", False, made, thread) for assets in others))
 
 
 def _episodes(job: Job, players: list[Seat]) -> Iterator[list[list[Decision]]]:
@@ -155,9 +177,9 @@ def _episodes(job: Job, players: list[Seat]) -> Iterator[list[list[Decision]]]:
     if job.visits == 1:
         yield from ([talk] for talk in _talks(job, players))
         return
-    street = _street(job.stall, get_ident())
+    street = _street(job.at, job.made, get_ident())
     if job.bodies:
-        observer = _observer(job.mode, bool(job.log), get_ident())
+        observer = _observer(job.mode, bool(job.log), job.made, get_ident())
         for first in range(0, job.count, BODIES_PER_JOB):
             seats = players[first : first + BODIES_PER_JOB]
             yield from play_outings_with_bodies(observer, seats, street, job.seed, job.first + first, job.visits)
@@ -169,7 +191,7 @@ def _episodes(job: Job, players: list[Seat]) -> Iterator[list[list[Decision]]]:
 def _talks(job: Job, players: list[Seat]) -> Iterator[list[Decision]]:
     """Single visits."""
     if job.bodies:
-        observer = _observer(job.mode, bool(job.log), get_ident())
+        observer = _observer(job.mode, bool(job.log), job.made, get_ident())
         for first in range(0, job.count, BODIES_PER_JOB):
             seats = players[first : first + BODIES_PER_JOB]
             yield from play_with_bodies(observer, seats, job.seed, job.first + first)
@@ -181,7 +203,9 @@ def _talks(job: Job, players: list[Seat]) -> Iterator[list[Decision]]:
 def work(job: Job) -> Result:
     """Play the episodes of a job. Raises BadInput for content that cannot be played to an end."""
     result, rows = Result(job.number), []
-    assets, trace = _assets(job.stall, job.cover, get_ident())
+    if job.made:
+        _check_made(job.made, job.stall, job.population, job.folder)
+    assets, trace = _assets(job.at, job.cover, job.made, get_ident())
     if trace is not None:
         trace.take()
     players = _players(job, assets)

@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from game.animation import Mode
+from game.app.autoplay.contents import code_hash, content_hash
 from game.app.autoplay.executors import Crew
 from game.app.autoplay.jobs import BODIES_PER_JOB, TALKS_PER_JOB, Job, Result, needs_bodies
 from game.app.autoplay.logfile import LogFile
 from game.app.autoplay.progress import Progress
 from game.app.autoplay.tally import Coverage, Tally
-from game.app.content import stall_path
-from game.core.paths import ASSETS, DIALOGUE
 
-__all__ = ["Plan", "Run", "content_hash", "play"]
+__all__ = ["Plan", "Run", "play"]
 
 
 @dataclass(frozen=True)
 class Plan:
     """What is to be played: every population plays ``episodes`` at every stall, each of ``visits`` talks.
 
-    record: a folder for a recording of every talk, "" for none."""
+    record: a folder for a recording of every talk, "" for none; folder: where names of files start on every machine, ""
+    for where a process stands."""
 
     stalls: tuple[str, ...]
     populations: tuple[str, ...]
@@ -37,6 +36,7 @@ class Plan:
     per_job: int = 0  # 0: as many as suit the work
     visits: int = 1
     record: str = ""
+    folder: str = ""
 
     @property
     def talks(self) -> int:
@@ -48,13 +48,14 @@ class Plan:
         number = 0
         for stall in self.stalls:
             for population in self.populations:
-                bodies = self.bodies or needs_bodies(population)
+                bodies = self.bodies or needs_bodies(population, self.folder)
+                made = f"{code_hash()} {content_hash((stall,), (population,), self.folder)}"
                 size = self.per_job or (BODIES_PER_JOB if bodies else TALKS_PER_JOB)
                 for first in range(0, self.episodes, size):
                     count = min(size, self.episodes - first)
                     yield Job(
                         number, stall, population, self.seed, first, count, bodies, self.mode, self.log, self.cover,
-                        self.visits, self.record,
+                        self.visits, self.record, self.folder, made,
                     )  # fmt: skip
                     number += 1
 
@@ -71,21 +72,9 @@ class Plan:
             "cover": self.cover,
             "per_job": [self.per_job, TALKS_PER_JOB, BODIES_PER_JOB],
             "visits": self.visits,
-            "contents": content_hash(self.stalls),
+            "contents": content_hash(self.stalls, self.populations),
+            "code": code_hash(),
         }
-
-
-def content_hash(stalls: tuple[str, ...]) -> str:
-    """Of everything that talks are made of."""
-    digest = hashlib.sha256()
-    files = {stall_path(stall).resolve() for stall in stalls}
-    for folder in {path.parent for path in files} | {DIALOGUE}:
-        files |= {path.resolve() for path in folder.rglob("*.yaml")}
-    files |= {ASSETS / "motion" / "units.yaml", ASSETS / "autoplay" / "strategies.yaml"}
-    files |= {ASSETS / "market" / "market.yaml"}
-    for path in sorted(files):
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
 
 
 Place = tuple[str, str, str]

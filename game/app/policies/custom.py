@@ -26,7 +26,7 @@ import sys
 import tempfile
 import threading
 import weakref
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +43,14 @@ VIEWS = ("table", "words", "face", "body", "reader", "oracle")
 MOVE_S = 5.0
 """A single move may take so long …"""
 CPU_S = 600
-"""… and all of them together so much of a processor …"""
+"""… and all of a process together so much of a processor …"""
+TALKS = 1000
+"""(a process plays so many talks, then another follows) …"""
 MEMORY_BYTES = 512 * 1024 * 1024
 """… and so much memory."""
 _MAX_BYTES = 200_000
 _MAX_ANSWER = 10_000
-_FORBIDDEN = own_worker.AWAY - {"print"}
+_FORBIDDEN = own_worker.AWAY
 _INSIDE = ("f_", "tb_", "gi_", "cr_", "ag_", "co_")
 """Attributes of frames, tracebacks, generators and code: through them one walks out of the file."""
 
@@ -70,7 +72,9 @@ class OwnPolicy:
             tree = ast.parse(source, str(path))
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             line = error.lineno if isinstance(error, SyntaxError) else None
-            raise BadInput("policy", where=Where(str(path), line), expected="Python", seen=str(error)) from None
+            raise BadInput(
+                "policy", where=Where(str(path), line), expected="Python", seen=str(error) or type(error).__name__
+            ) from None
         sees, moves = "", False
         for node in ast.walk(tree):
             _check(node, path)
@@ -86,10 +90,10 @@ class OwnPolicy:
 
     def sit(self, rng: random.Random) -> _OwnPlayer:
         """A new talk."""
-        if self._process is None:
+        if self._process is None or self._process.talks >= TALKS:
+            # One that still plays lives as long as its players.
             self._process = _Process(self.path, self.source)
-        self._process.send({"seed": rng.getrandbits(48)})
-        return _OwnPlayer(self._process)
+        return _OwnPlayer(self._process, rng.getrandbits(48))
 
 
 def _check(node: ast.AST, path: Path) -> None:
@@ -116,14 +120,20 @@ def _check(node: ast.AST, path: Path) -> None:
         raise BadInput(f"{wrong} is not allowed in a policy", where=place)
 
 
-@dataclass
 class _OwnPlayer:
-    process: _Process
+    """One talk; many may be played side by side in one process."""
+
+    def __init__(self, process: _Process, seed: int) -> None:
+        self.process = process
+        process.talks += 1
+        self.talk = process.talks
+        process.send({"talk": self.talk, "seed": seed})
+        weakref.finalize(self, process.over.append, self.talk)
 
     def move(self, view: View) -> Choice:
         """Ask the file."""
         kind = asdict(view)
-        answer = self.process.ask({"table": kind} if isinstance(view, Table) else kind)
+        answer = self.process.ask(self.talk, {"table": kind} if isinstance(view, Table) else kind)
         choice, offer = answer.get("choice"), answer.get("offer")
         if not isinstance(choice, str) or not (offer is None or type(offer) is int):
             raise BadInput(f"policy {self.process.path}", expected='{"choice": ID, "offer": whole number or None}',
@@ -135,7 +145,7 @@ class _Process:
     """The file's process (``own_worker``): plain data in and out, nothing inherited but its source."""
 
     def __init__(self, path: Path, source: str) -> None:
-        self.path = path
+        self.path, self.talks, self.over = path, 0, list[int]()
         self.folder = tempfile.TemporaryDirectory(prefix="mcg-policy-")
         self.popen = subprocess.Popen(
             [sys.executable, "-I", "-S", own_worker.__file__],
@@ -145,10 +155,12 @@ class _Process:
         self._end = weakref.finalize(self, _kill, self.popen, self.folder)
         self.answers: queue.Queue[bytes] = queue.Queue()
         threading.Thread(target=_listen, args=(self.popen, self.answers), daemon=True).start()
-        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES})
+        self.send({"source": source, "cpu_s": CPU_S, "memory": MEMORY_BYTES, "answer": _MAX_ANSWER})
 
     def send(self, message: dict[str, Any]) -> None:
-        """One line to the file's process."""
+        """One line to the file's process, and which talks are over since the last."""
+        over, self.over[:] = list(self.over), []
+        message = {**message, "over": over}
         assert self.popen.stdin is not None
         try:
             self.popen.stdin.write(json.dumps(message).encode() + b"\n")
@@ -156,9 +168,9 @@ class _Process:
         except BrokenPipeError:
             raise self._gone() from None
 
-    def ask(self, view: dict[str, Any]) -> dict[str, Any]:
+    def ask(self, talk: int, view: dict[str, Any]) -> dict[str, Any]:
         """One move. Raises BadInput where the file fails, is too slow or says nothing of use."""
-        self.send({"view": view})
+        self.send({"talk": talk, "view": view})
         try:
             line = self.answers.get(timeout=MOVE_S)
         except queue.Empty:
@@ -169,7 +181,8 @@ class _Process:
             raise self._gone()
         answer = json.loads(line)
         if "error" in answer:
-            raise BadInput(f"policy {self.path}", expected="a move", seen=answer["error"])
+            where = Where(str(self.path), answer.get("line"))
+            raise BadInput("policy", where=where, expected="a move", seen=answer["error"])
         return dict(answer)
 
     def _gone(self) -> BadInput:

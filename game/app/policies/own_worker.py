@@ -1,14 +1,16 @@
 """The process of an own policy: limits, a few names of a few modules, and nothing that outlasts a talk.
 
 Run by path with ``-I -S``, apart from the game: nothing is imported but the standard library. Lines of JSON come in
-(first the source and the limits, then seeds and views) and go out (moves, or errors).
+(first the source and the limits, then seeds and views with their talk) and go out (moves, or errors).
 """
 
 from __future__ import annotations
 
 import builtins
 import contextlib
+import dataclasses
 import json
+import os
 import random
 import sys
 import types
@@ -85,15 +87,16 @@ class Unchanged:
 
 
 class Policy:
-    """A checked source; every talk runs it anew."""
+    """A checked source; every talk runs it anew. Talks may be played side by side, and know nothing of each other."""
 
     def __init__(self, source: str) -> None:
         self.code = compile(source, "policy", "exec")
         self.modules = {name: public(name) for name in PUBLIC}
         self.unchanged = Unchanged(value for module in self.modules.values() for value in module.values())
+        self.talks: dict[int, _Talk] = {}
 
-    def begin(self, seed: int) -> None:
-        """A new talk: nothing of the one before is left, so that no result depends on who played it."""
+    def begin(self, talk: int, seed: int) -> None:
+        """A new talk: nothing of another is left, so that no result depends on who played it."""
         self.unchanged.restore()
         shown: dict[str, types.SimpleNamespace] = {}
 
@@ -108,23 +111,42 @@ class Policy:
 
         safe = {name: value for name, value in vars(builtins).items() if name not in AWAY and name[0] != "_"}
         safe |= {"__import__": limited, "__build_class__": builtins.__build_class__}
-        self.memory: dict[Any, Any] = {}
-        self.rng = random.Random(seed)
-        self.space: dict[str, Any] = {"__builtins__": safe, "__name__": "policy"}
-        self.broken = ""
+        begun = self.talks[talk] = _Talk({"__builtins__": safe, "__name__": "policy"}, {}, random.Random(seed))
         try:
-            exec(self.code, self.space)
-        except Exception as error:
-            self.broken = f"{type(error).__name__}: {error}"
+            exec(self.code, begun.space)
+        except BaseException as error:
+            begun.broken = _told(error)
 
-    def move(self, view: Any) -> dict[str, Any]:
+    def move(self, talk: int, view: Any) -> dict[str, Any]:
         """What the file answers, or an error."""
-        if self.broken:
-            return {"error": self.broken[:200]}
+        own = self.talks[talk]
+        if own.broken:
+            return own.broken
+        self.unchanged.restore()
         try:
-            return dict(self.space["move"](view, self.memory, self.rng))
-        except Exception as error:
-            return {"error": f"{type(error).__name__}: {error}"[:200]}
+            answer = own.space["move"](view, own.memory, own.rng)
+            return answer if isinstance(answer, dict) else {"error": f"move gave {answer!r}"[:200]}
+        except BaseException as error:  # SystemExit among them
+            return _told(error)
+
+
+@dataclasses.dataclass
+class _Talk:
+    space: dict[str, Any]
+    memory: dict[Any, Any]
+    rng: random.Random
+    broken: dict[str, Any] = dataclasses.field(default_factory=dict)
+
+
+def _told(error: BaseException) -> dict[str, Any]:
+    """The error, and the last line of the file it came by."""
+    told: dict[str, Any] = {"error": f"{type(error).__name__}: {error}"[:200]}
+    trace = error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == "policy":
+            told["line"] = trace.tb_lineno
+        trace = trace.tb_next
+    return told
 
 
 def main() -> None:
@@ -133,19 +155,26 @@ def main() -> None:
     for name in PUBLIC:
         __import__(name)
     limit(first)
-    policy = Policy(first["source"])
+    policy, told_most = Policy(first["source"]), first["answer"]
     for line in sys.stdin:
         message = json.loads(line)
+        for over in message["over"]:
+            policy.talks.pop(over, None)
         if "seed" in message:
-            policy.begin(message["seed"])
+            policy.begin(message["talk"], message["seed"])
             continue
-        answer = policy.move(message["view"])
+        answer = policy.move(message["talk"], message["view"])
         try:
             told = json.dumps(answer)
+            if len(told) >= told_most:
+                told = json.dumps({"error": f"an answer of {len(told)} characters"})
         except (TypeError, ValueError, RecursionError) as error:
             told = json.dumps({"error": f"{type(error).__name__}: {error}"[:200]})
         sys.stdout.write(told + "\n")
         sys.stdout.flush()
+    # A worker of a pool ends without a word, and with it who would clear this away.
+    with contextlib.suppress(OSError):
+        os.rmdir(os.getcwd())
 
 
 if __name__ == "__main__":

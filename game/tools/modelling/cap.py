@@ -24,15 +24,15 @@ class Cap:
         back, left = np.radians(spec.tilt_deg)
         about_x = np.array([[1, 0, 0], [0, np.cos(back), np.sin(back)], [0, -np.sin(back), np.cos(back)]])
         about_z = np.array([[np.cos(left), np.sin(left), 0], [-np.sin(left), np.cos(left), 0], [0, 0, 1]])
-        self._turn = about_z @ about_x
+        self.turn = about_z @ about_x
         reach = max(spec.radii) + spec.peak[0] + 0.03
         box = (self._at - (reach, 0.12, reach), self._at + (reach, 0.16, reach))
-        self._crown = Sculpt(self._crown_field, *box, 0.0042, 2e-3)
-        self._band = Sculpt(self._band_field, *box, 0.0036)
-        self._peak = Sculpt(self._peak_field, *box, 0.0032)
+        self.crown = Sculpt(self._crown_field, *box, 0.0042, 2e-3, stepwise=True)
+        self._band = Sculpt(self._band_field, *box, 0.0036, stepwise=True)
+        self._peak = Sculpt(self._peak_field, *box, 0.0032, stepwise=True)
 
     def _local(self, p: Floats) -> Floats:
-        return np.asarray((p - self._at) @ self._turn)
+        return np.asarray((p - self._at) @ self.turn)
 
     def _crown_field(self, p: Floats) -> Floats:
         q, (rx, ry, rz) = self._local(p), self.spec.radii
@@ -64,7 +64,7 @@ class Cap:
         return smooth_max(smooth_max(outline, sheet, 0.006), -z - 0.02, 0.01)
 
     def parts(self, binder: Binder, detail: Detail) -> list[Part]:
-        rows = (("cap", self._crown, 2600), ("cap_band", self._band, 900), ("cap_peak", self._peak, 1100))
+        rows = (("cap", self.crown, 2600), ("cap_band", self._band, 900), ("cap_peak", self._peak, 1100))
         parts = []
         for name, sculpt, count in rows:
             mesh = sculpt.mesh(detail.triangles(count))

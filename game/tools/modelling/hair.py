@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from game.tools.modelling.curls import curl_meshes
-from game.tools.modelling.fields import Field, Floats, ellipsoid, smooth_max, smooth_min, smoothstep, unit
+from game.tools.modelling.beard import beard_field
+from game.tools.modelling.curls import CurlyMass, grown, overgrown
+from game.tools.modelling.fields import Field, Floats, ellipsoid, smooth_max, smooth_min, smoothstep, union, unit
 from game.tools.modelling.lofts import bezier, loft
 from game.tools.modelling.mesh import Mesh
 from game.tools.modelling.parts import Detail, Part
@@ -18,6 +19,11 @@ from game.tools.modelling.surface import Sculpt
 from game.tools.modelling.weights import Binder
 
 __all__ = ["Hair"]
+
+_CURLS_M = np.array([0.30, 0.28, 0.30])
+"""No curl stands further from the head's centre, metres."""
+_SIDEBURN_M = 0.014
+"""How softly hair and beard join, in shape and in how they swing."""
 
 
 class Hair:
@@ -33,6 +39,9 @@ class Hair:
         self._cap = Sculpt(
             self._cap_field(), head_centre - (reach, 0.22, reach), head_centre + (reach, 0.24, reach), 0.006
         )
+        self._loose = overgrown(self._cap.field, list(grown(spec.curls, self.on_scalp)))
+        self._beard = self._beard_field() if spec.beard else None
+        self.curls = self._curly() if spec.curls or spec.beard else None
         self.chains = {
             np.radians(azimuth): self._chain(name, azimuth, springs["hair"]) for name, azimuth in spec.chains
         }
@@ -94,6 +103,24 @@ class Hair:
             profile = profile * np.interp(t, [0.0, 0.3], [1.0 - spec.taper, 1.0])
         return loft(path, outward, spec.width * profile, spec.thickness * profile**0.8, detail.sides(9, 5))
 
+    def _beard_field(self) -> Field:
+        spec = self.spec.beard
+        assert spec is not None
+        return overgrown(beard_field(spec, self.head_centre, self._skin), list(grown(spec.curls, self.on_skin)))
+
+    def _curly(self) -> CurlyMass:
+        """Hair and beard in one: what grows together has no seam at the sideburns."""
+        field = self._loose if self._beard is None else union(_SIDEBURN_M, self._loose, self._beard)
+        return CurlyMass(field, self._skin, self.head_centre - _CURLS_M, self.head_centre + _CURLS_M)
+
+    def curly_weights(self, points: Floats, binder: Binder) -> Floats:
+        """(n, J): hair swings, a beard stays on the skin."""
+        weights = binder.hair(points, self.chains)
+        if self._beard is None:
+            return weights
+        swings = smoothstep(-_SIDEBURN_M, _SIDEBURN_M, self._beard(points) - self._loose(points))[:, None]
+        return weights * swings + binder.rigid(points, "head") * (1.0 - swings)
+
     def all_clumps(self, detail: Detail) -> list[tuple[ClumpSpec, Mesh]]:
         return [(spec, self.clump(spec, detail)) for spec in self.spec.clumps]
 
@@ -125,15 +152,15 @@ class Hair:
         )
 
     def parts(self, binder: Binder, detail: Detail) -> list[Part]:
-        cap = self._cap.mesh(detail.triangles(1500))
-        parts = [Part("hair_cap", "hair", cap, binder.rigid(cap.position, "head"), 0.9)]
+        if self.curls:
+            mesh = self.curls.mesh(detail.triangles(27000))
+            parts = [Part("hair_curls", "hair", mesh, self.curly_weights(mesh.position, binder), 0.8)]
+        else:
+            mesh = self._cap.mesh(detail.triangles(1500))
+            parts = [Part("hair_cap", "hair", mesh, binder.rigid(mesh.position, "head"), 0.9)]
         for number, (spec, mesh) in enumerate(self.all_clumps(detail)):
             weights = binder.hair(mesh.position, self.chains)
             parts.append(Part(f"hair_{spec.layer}_{number}", "hair", mesh, weights, 0.8))
-        for number, mesh in enumerate(curl_meshes(self.spec.curls, self.on_scalp, detail)):
-            parts.append(Part(f"hair_curl_{number}", "hair", mesh, binder.hair(mesh.position, self.chains), 0.8))
-        for number, mesh in enumerate(curl_meshes(self.spec.beard, self.on_skin, detail)):
-            parts.append(Part(f"beard_{number}", "hair", mesh, binder.rigid(mesh.position, "head"), 0.7))
         for whisker in self.spec.whiskers:
             mesh = self._tuft(whisker, detail)
             weights = binder.rigid(mesh.position, "head")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from game.formats import Node
 from game.tools.modelling.records import Vector, number_value, record, value
 
-__all__ = ["ClumpSpec", "CurlSpec", "HairSpec", "TuftSpec", "read_hair"]
+__all__ = ["BeardSpec", "ClumpSpec", "CurlSpec", "HairSpec", "TuftSpec", "read_hair"]
 
 _LAYERS = ("fringe", "accent", "side", "back", "under", "crown")
 _HAIRLINE = ((0, 0.110), (40, 0.075), (70, 0.020), (88, -0.035), (105, -0.092), (130, -0.128), (180, -0.142))
@@ -50,27 +50,49 @@ class TuftSpec:
 
 @dataclass(frozen=True)
 class CurlSpec:
-    """A row of round curls on the scalp: ``count`` of them from one azimuth to the other at a polar angle.
+    """A row of curly locks: ``count`` roots from one azimuth and polar angle to the other.
 
-    size: radius of a curl. lift: of its middle above the scalp. turns: windings of its spiral. uneven: share by which
-    sizes, heights and angles differ from curl to curl.
+    length, width: of a lock, metres. lift: of its middle above the scalp. lean_deg: where it grows: 0 straight down,
+    90 to his left. turns: of the hook at its end; hand: which way (1, -1; 0: now this, now that); roll_deg: 0 where it
+    lies on the scalp, 90 where it stands out from it. join: how softly it grows out of the others, in widths. uneven:
+    share by which sizes, places and directions differ from lock to lock.
     """
 
     azimuth_deg: tuple[float, float]
     polar_deg: tuple[float, float]
     count: int
-    size: float
+    length: float
+    width: float
     lift: float
-    turns: float = 1.5
+    lean_deg: float = 0.0
+    turns: float = 0.6
+    roll_deg: float = 20.0
+    hand: float = 0.0
+    join: float = 0.25
     uneven: float = 0.2
+
+
+@dataclass(frozen=True)
+class BeardSpec:
+    """A beard on the skin.
+
+    line, under: rows (azimuth, polar) of its upper and lower edge by direction from the head's centre (polar 90 is
+    level, 180 down), symmetric; it ends where they meet. thickness: over the skin. lips: half width, middle height and
+    half height of what stays bare around the mouth, from the head's centre. curls: its locks.
+    """
+
+    line: tuple[tuple[float, float], ...]
+    under: tuple[tuple[float, float], ...]
+    thickness: float
+    lips: Vector
+    curls: tuple[CurlSpec, ...]
 
 
 @dataclass(frozen=True)
 class HairSpec:
     """radii, centre: the scalp. hairline: rows (azimuth, height) of the cap's lower edge, symmetric. nape: radius of
     the hair behind the ears (0 = shaved), crown: how much the cap rises between the locks of the crown, whiskers:
-    tufts that do not swing, beard: curls on the skin, by their direction from the head's centre (polar 90 is level,
-    180 down), chains: spring bones by azimuth."""
+    tufts that do not swing, curls: locks that grow out of the cap, chains: spring bones by azimuth."""
 
     radii: Vector
     centre: Vector
@@ -79,7 +101,7 @@ class HairSpec:
     chains: tuple[tuple[str, float], ...]
     whiskers: tuple[TuftSpec, ...] = ()
     curls: tuple[CurlSpec, ...] = ()
-    beard: tuple[CurlSpec, ...] = ()
+    beard: BeardSpec | None = None
     hairline: tuple[tuple[float, float], ...] = _HAIRLINE
     nape: float = 0.160
     crown: float = 0.018
@@ -122,7 +144,7 @@ def read_hair(node: Node) -> HairSpec:
         chains=() if chains is None else tuple((k.as_str(), v.as_float(-180, 180)) for k, v in chains.items()),
         whiskers=rows("whiskers", TuftSpec),
         curls=rows("curls", CurlSpec),
-        beard=rows("beard", CurlSpec),
+        beard=record(node["beard"], BeardSpec) if "beard" in node else None,
         hairline=hairline,
         **optional,
     )

@@ -18,6 +18,7 @@ __all__ = ["Sculpt"]
 _BLOCK = 8
 """Cells per block edge: the field is sampled once per block first, and finely only near the surface."""
 _RELAX_ROUNDS = 3
+_UNFOLD_ROUNDS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +34,10 @@ class Sculpt:
     high: ArrayLike
     cell_m: float
     normal_step_m: float = 6e-4
+    hidden: Field | None = None
+    """Triangles within this field are left out; and thin parts keep their shape in coarse meshes."""
+    stepwise: bool = False
+    """Simplify by halves: at one go, wide and thin shapes collapse before they are simple enough."""
 
     @cached_property
     def fine(self) -> tuple[Floats, Ints]:
@@ -52,17 +57,51 @@ class Sculpt:
         facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         if ((facing * normals(self.field, corners.mean(1))).sum(1) > 0).mean() < 0.5:
             triangle = np.ascontiguousarray(triangle[:, ::-1])
+        if self.hidden is not None:
+            seen = (self.hidden(position) >= 0)[triangle].any(axis=1)
+            used, renumbered = np.unique(triangle[seen], return_inverse=True)
+            position, triangle = position[used], renumbered.reshape(-1, 3).astype(np.int64)
         return position, triangle
 
     def mesh(self, target: int) -> Mesh:
         """About ``target`` triangles (all, if the fine triangulation has fewer), every vertex on the field."""
         position, triangle = self.fine
         if target < len(triangle):
-            reduced, faces = fast_simplification.simplify(
-                position.astype(np.float32), triangle.astype(np.int32), target_reduction=1.0 - target / len(triangle)
-            )[:2]
-            position, triangle = project(self.field, reduced.astype(np.float64)), faces.astype(np.int64)
+            position, triangle = _simplified(position, triangle, target, 0.5 if self.stepwise else 0.0)
+            projected = project(self.field, position)
+            position = projected if self.hidden is None else _unfolded(position, projected, triangle)
         return Mesh(position, normals(self.field, position, self.normal_step_m), triangle)
+
+
+def _simplified(position: Floats, triangle: Ints, target: int, least_share: float) -> tuple[Floats, Ints]:
+    """About ``target`` triangles, in steps that leave at least so many of those before."""
+    vertices, faces = position.astype(np.float32), triangle.astype(np.int32)
+    before = len(faces) + 1
+    while target < len(faces) < before:
+        before = len(faces)
+        share = max(target / before, least_share)
+        vertices, faces = fast_simplification.simplify(vertices, faces, target_reduction=1.0 - share)[:2]
+        if least_share == 0.0:
+            break
+    return vertices.astype(np.float64), faces.astype(np.int64)
+
+
+def _unfolded(before: Floats, after: Floats, triangle: Ints) -> Floats:
+    """``after`` (n, 3), but for vertices whose triangles it turns over or stretches thin: those stay as ``before``."""
+
+    def facing(position: Floats) -> Floats:
+        a, b, c = (position[triangle[:, i]] for i in range(3))
+        return np.cross(b - a, c - a)
+
+    stays = np.zeros(len(before), bool)
+    old = facing(before)
+    for _ in range(_UNFOLD_ROUNDS):
+        new = facing(np.where(stays[:, None], before, after))
+        turned = (old * new).sum(1) < 0.5 * np.linalg.norm(old, axis=1) * np.linalg.norm(new, axis=1)
+        if not turned.any():
+            break
+        stays[triangle[turned]] = True
+    return np.where(stays[:, None], before, after)
 
 
 def _samples(field: Field, low: Floats, high: Floats, cell_m: float) -> Floats:

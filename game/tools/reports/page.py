@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -14,7 +15,7 @@ from game.app.autoplay.tally import Tally
 from game.app.content import load_talk_assets, stall_path
 from game.core.errors import BadInput
 from game.core.paths import ASSETS
-from game.formats.files import write_text
+from game.formats.files import write_bytes, write_text
 from game.tools.reports.plots import PLOTS, figure_svg, load_matplotlib, tallies_of
 
 __all__ = ["write_plots", "write_report"]
@@ -74,7 +75,9 @@ def write_plots(folder: Path, run: Run) -> None:
             for kind in ("svg", "png"):
                 metadata = {"Date": None, "Creator": None} if kind == "svg" else {}
                 place = folder / f"{stall_path(stall).stem}_{name}.{kind}"
-                figure.savefig(place, dpi=150, bbox_inches="tight", metadata=metadata)
+                drawn = io.BytesIO()
+                figure.savefig(drawn, format=kind, dpi=150, bbox_inches="tight", metadata=metadata)
+                write_bytes(place, drawn.getvalue())
             plt.close(figure)
 
 
