@@ -141,6 +141,7 @@ def test_missed_requirements_are_the_exit_code(tmp_path: Path, capsys) -> None:
         ("balance: [{policy: random, above: oracle}]", "wanted.yaml:1:11"),
         ("balance: [{policy: random, surplus: [1]}]", "wanted.yaml:1:37"),
         ("balance: [{policy: random, above: reader, by: 0.1}]", "wanted.yaml:1:11"),
+        ("balance: [{policy: random, stalls: [toyz], surplus: [0, 1]}]", "toys"),
         ("cover: {}", "wanted.yaml:1:1"),
     ],
 )

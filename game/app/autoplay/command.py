@@ -126,7 +126,7 @@ def run(args: argparse.Namespace) -> int:
         folder=os.getcwd() if args.dask else "",
     )  # fmt: skip
     if requirements is not None:
-        check_played(requirements, plan.populations, plan.visits)
+        check_played(requirements, plan.populations, plan.visits, plan.stalls)
     check_places(args.out, args.record, args.plots, [args.junit, args.report])
     if args.report is not None or args.plots is not None:
         from game.tools.reports import load_matplotlib

@@ -23,7 +23,8 @@ from game.app.autoplay.coverage import KINDS, Reached, covered
 from game.app.autoplay.runs import Run
 from game.app.autoplay.tally import Interval, Tally
 from game.core.errors import BadInput, Where
-from game.formats.yaml_source import Node, load_yaml
+from game.formats.yaml_source import Node, load_yaml, nearest
+from game.story import shipped_stalls
 
 __all__ = ["Finding", "Requirement", "Requirements", "check_played", "judge", "load_requirements"]
 
@@ -119,12 +120,20 @@ def _requirement(node: Node) -> Requirement:
     return made
 
 
-def check_played(requirements: Requirements, populations: Sequence[str], visits: int = 1) -> None:
-    """Raises BadInput for a policy that is spoken of and will not be played, or too few visits: before any talk."""
+def check_played(
+    requirements: Requirements, populations: Sequence[str], visits: int = 1, stalls: Sequence[str] = ()
+) -> None:
+    """Raises BadInput for a policy that is spoken of and will not be played, a stall that is none, or too few visits:
+    before any talk. stalls: those that are played; shipped ones may be spoken of as well."""
     least, where = requirements.visits
     if visits < least:
         raise BadInput(where, expected=f"{least} visits an episode", seen=visits, hint=f"play it so: --visits {least}")
+    known = tuple(dict.fromkeys((*(path.stem for path in shipped_stalls()), *stalls)))
     for requirement in requirements.balance:
+        for name in requirement.stalls:
+            if name not in known:
+                # Nothing would be asked of it, and nobody told.
+                raise BadInput(requirement.where, expected=" | ".join(known), seen=name, hint=nearest(name, known))
         for name in (requirement.policy, *requirement.others()):
             if name not in populations:
                 raise BadInput(
