@@ -117,7 +117,7 @@ def test_missed_requirements_are_the_exit_code(tmp_path: Path, capsys) -> None:
         "  - {policy: random, above: oracle, by: 0.1}\n"
         "  - {policy: random, not_above: oracle}\n"
         "  - {policy: oracle, surplus: [0.3, 1.0], moves: [1, 2]}\n"
-        "  - {policy: random, stalls: [elsewhere], surplus: [1, 1]}\n"
+        "  - {policy: random, stalls: [toys], surplus: [1, 1]}\n"
     )
     words = ["autoplay", "--episodes", "20", "--policy", "random", "--policy", "oracle", "--json"]
     assert main([*words, "--require", str(wanted), "--junit", str(junit)]) == 1
