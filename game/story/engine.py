@@ -35,9 +35,9 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     their default. Raises BadInput for an event that does not fit: a choice that is not offered, an unknown
     outcome, anything after the end.
     """
-    if state.talk.ready.script is not script:
-        state = restore(script, save(state))
     run = _Run(state, env)
+    if run.ready.script is not script:
+        run = _Run(restore(script, save(state)), env)
     if run.ended is not None:
         raise BadInput("talk", expected="one that goes on", seen=f"ended: {run.ended}")
     if isinstance(event, Chose) and run.started:
@@ -51,7 +51,7 @@ def advance(script: Script, state: StoryState, event: Event, env: Mapping[str, V
     elif isinstance(event, Start) == run.started:
         raise BadInput("event", expected="Start once, and first", seen=type(event).__name__)
     elif isinstance(event, Start):
-        came_back = script.outcomes.get("came_back") if state.visit > 1 else None
+        came_back = script.outcomes.get("came_back") if run.talk.visit > 1 else None
         run.walk(came_back or script.start, None)
     else:
         assert isinstance(event, Outcome)

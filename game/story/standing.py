@@ -21,7 +21,7 @@ from game.story.vocabulary import DEFAULTS, Value
 __all__ = ["StoryState", "Talk"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Talk:
     """What stays the same from the first step of a talk to its last.
 
@@ -87,9 +87,6 @@ class StoryState(NamedTuple):
 
     def __ne__(self, other: object) -> bool:
         return not self == other
-
-    def __hash__(self) -> int:
-        return hash(self[:-3])
 
     def _counts(self) -> tuple[Mapping[str, int], Mapping[str, int], tuple[str, ...]]:
         return Counter(self.nodes), Counter([line.id for line in self.lines]), self.last_lines
