@@ -27,9 +27,10 @@ def there(folder: str, name: str) -> str:
 
 @lru_cache(maxsize=1)
 def code_hash() -> str:
-    """Of the code that this process runs: looked at once, for code that is edited later is not read again."""
+    """Of the code that this process runs, compiled loops included: looked at once, for code that is edited later is not
+    read again."""
     digest = hashlib.sha256()
-    for path in sorted((ROOT / "game").rglob("*.py")):
+    for path in sorted(path for path in (ROOT / "game").rglob("*") if path.suffix in {".py", ".wasm"}):
         digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
