@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import logging
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -34,6 +35,8 @@ def load_matplotlib() -> Any:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
+    # A Japanese font often has one weight: titles take that one, and nobody need be told.
+    logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
     plt.rcParams.update(
         {
             "font.family": ["sans-serif", *_japanese()], "font.size": 10, "text.color": INK, "axes.edgecolor": LINE,
