@@ -25,7 +25,8 @@ def dask_executor(address: str, workers: int) -> tuple[Executor, int, Callable[[
     cluster: Any = None
     try:
         if address == "local":
-            cluster = dask.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
+            # Any free port for its page of figures, which only this machine can reach.
+            cluster = dask.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")
         client: Any = dask.Client(cluster or address, timeout="20s")
     except (OSError, ValueError, TimeoutError) as error:
         raise BadInput("--dask", expected="a scheduler that answers, or local", seen=f"{address}: {error}") from None
